@@ -1,0 +1,190 @@
+#include "backends/cpu/cpu_backend.h"
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <map>
+#include <new>
+#include <thread>
+
+#include <unistd.h>
+
+#include "backends/cpu/cpu_kernels.h"
+#include "backends/cpu/radix_sort.h"
+#include "backends/cpu/thread_pool.h"
+#include "util/error.h"
+
+namespace fontana {
+namespace {
+
+// Particles a thread takes at a time: long enough to hide the counter, short enough to share out a splash evenly.
+constexpr std::size_t k_grain = 512;
+
+class CpuBuffer : public Buffer {
+ public:
+    CpuBuffer(const std::string& name, std::size_t bytes)
+        : Buffer(name, bytes),
+          data_(static_cast<char*>(::operator new(std::max<std::size_t>(bytes, 16), k_alignment))) {
+        std::fill_n(data_, std::max<std::size_t>(bytes, 16), '\0');
+    }
+    ~CpuBuffer() override { ::operator delete(data_, k_alignment); }
+    char* data() const { return data_; }
+
+ private:
+    static constexpr std::align_val_t k_alignment{64};
+    char* data_;
+};
+
+char* data_of(const Buffer& buffer) { return static_cast<const CpuBuffer&>(buffer).data(); }
+
+struct KernelTable {
+    const CpuKernel* kernels;
+    const char* instruction_set;
+};
+
+KernelTable choose_kernels(bool strict) {
+    if (strict) return {strict_kernels(), "strict arithmetic"};
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return {avx2_kernels(), "AVX2"};
+#endif
+    return {baseline_kernels(), "baseline instructions"};
+}
+
+std::string processor_name() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);) {
+        const std::size_t colon = line.find(": ");
+        if (line.rfind("model name", 0) == 0 && colon != std::string::npos) return line.substr(colon + 2);
+    }
+    return "processor";
+}
+
+DeviceInfo describe(bool strict) {
+    DeviceInfo info;
+    info.backend = "cpu";
+    info.name = processor_name();
+    info.driver = std::string("native, ") + choose_kernels(strict).instruction_set;
+    const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGE_SIZE);
+    info.memory_bytes =
+        pages > 0 && page > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page) : 0;
+    info.compute_units = std::max(1u, std::thread::hardware_concurrency());
+    info.available = true;
+    return info;
+}
+
+class CpuBackend : public Backend {
+ public:
+    explicit CpuBackend(const BackendOptions& options)
+        : info_(describe(options.strict)),
+          kernels_(choose_kernels(options.strict).kernels),
+          profile_(options.profile),
+          pool_(options.threads > 0 ? options.threads : static_cast<int>(info_.compute_units)) {}
+
+    const DeviceInfo& device() const override { return info_; }
+
+    std::unique_ptr<Buffer> allocate(const std::string& name, std::size_t bytes) override {
+        try {
+            return std::make_unique<CpuBuffer>(name, bytes);
+        } catch (const std::bad_alloc&) {
+            fail(FONTANA_OUT_OF_MEMORY, "out of memory: no " + std::to_string(bytes) + " bytes for '" + name + "'");
+        }
+    }
+
+    void write(Buffer& to, const void* from, std::size_t bytes, std::size_t offset) override {
+        check_range(to, bytes, offset);
+        if (bytes) std::memcpy(data_of(to) + offset, from, bytes);
+    }
+
+    void read(const Buffer& from, void* to, std::size_t bytes, std::size_t offset) override {
+        check_range(from, bytes, offset);
+        if (bytes) std::memcpy(to, data_of(from) + offset, bytes);
+    }
+
+    void copy(const Buffer& from, Buffer& to, std::size_t bytes) override {
+        check_range(from, bytes, 0);
+        write(to, data_of(from), bytes, 0);
+    }
+
+    void launch(Kernel kernel, std::size_t count, KernelArguments arguments) override {
+        const CpuKernel& code = kernels_[static_cast<int>(kernel)];
+        void* addresses[16];
+        collect(kernel, code, arguments, addresses);
+        timed(kernel_facts(kernel).name, [&] {
+            pool_.run(count, k_grain, [&](std::size_t begin, std::size_t end) { code.run(addresses, begin, end); });
+        });
+    }
+
+    void sort(const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start) override {
+        check_range(key, count * 4, 0);
+        check_range(order, count * 4, 0);
+        check_range(start, (key_count + 1) * 4, 0);
+        timed("sort", [&] {
+            sorter_.sort(pool_, reinterpret_cast<const std::uint32_t*>(data_of(key)), count, key_count,
+                         reinterpret_cast<std::uint32_t*>(data_of(order)),
+                         reinterpret_cast<std::uint32_t*>(data_of(start)));
+        });
+    }
+
+    void finish() override {}
+
+    std::vector<ProfileRow> profile() const override {
+        std::vector<ProfileRow> rows;
+        for (const auto& entry : rows_) rows.push_back(entry.second);
+        return rows;
+    }
+
+ private:
+    static void check_range(const Buffer& buffer, std::size_t bytes, std::size_t offset) {
+        if (bytes > buffer.bytes() || offset > buffer.bytes() - bytes)
+            fail(FONTANA_INTERNAL, "access beyond the end of buffer '" + buffer.name() + "'");
+    }
+
+    static void collect(Kernel kernel, const CpuKernel& code, KernelArguments arguments, void** addresses) {
+        const char* name = kernel_facts(kernel).name;
+        if (static_cast<int>(arguments.size()) != code.argument_count)
+            fail(FONTANA_INTERNAL, std::string("kernel '") + name + "' was launched with " +
+                                       std::to_string(arguments.size()) + " arguments, not " +
+                                       std::to_string(code.argument_count));
+        int k = 0;
+        for (const KernelArgument& argument : arguments) {
+            const std::size_t bytes = argument.buffer() ? 0 : argument.value_bytes();
+            if (bytes != code.value_bytes[k])
+                fail(FONTANA_INTERNAL, std::string("kernel '") + name + "': argument " + std::to_string(k) +
+                                           " has the wrong kind or size");
+            addresses[k] = argument.buffer() ? static_cast<void*>(data_of(*argument.buffer()))
+                                             : const_cast<void*>(argument.value());
+            ++k;
+        }
+    }
+
+    template <typename Work>
+    void timed(const char* name, const Work& work) {
+        if (!profile_) {
+            work();
+            return;
+        }
+        const auto begin = std::chrono::steady_clock::now();
+        work();
+        ProfileRow& row = rows_[name];
+        row.name = name;
+        ++row.launches;
+        row.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    }
+
+    DeviceInfo info_;
+    const CpuKernel* kernels_;
+    bool profile_;
+    ThreadPool pool_;
+    RadixSort sorter_;
+    std::map<std::string, ProfileRow> rows_;
+};
+
+}  // namespace
+
+std::vector<DeviceInfo> list_cpu_devices() { return {describe(false)}; }
+
+std::unique_ptr<Backend> make_cpu_backend(const BackendOptions& options) {
+    return std::make_unique<CpuBackend>(options);
+}
+
+}  // namespace fontana

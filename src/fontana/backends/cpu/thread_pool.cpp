@@ -1,0 +1,75 @@
+#include "backends/cpu/thread_pool.h"
+
+#include <algorithm>
+
+namespace fontana {
+
+ThreadPool::ThreadPool(int thread_count) {
+    for (int k = 1; k < thread_count; ++k) workers_.emplace_back([this] { work(); });
+}
+
+ThreadPool::~ThreadPool() {
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        stopping_ = true;
+    }
+    start_.notify_all();
+    for (std::thread& worker : workers_) worker.join();
+}
+
+void ThreadPool::run(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+    if (count == 0) return;
+    if (workers_.empty() || count <= grain) {
+        body(0, count);
+        return;
+    }
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        body_ = &body;
+        count_ = count;
+        grain_ = grain;
+        next_ = 0;
+        error_ = nullptr;
+        busy_ = workers_.size();
+        ++generation_;
+    }
+    start_.notify_all();
+    take_pieces();
+    std::unique_lock<std::mutex> lock(mutex_);
+    done_.wait(lock, [this] { return busy_ == 0; });
+    body_ = nullptr;
+    if (error_) std::rethrow_exception(error_);
+}
+
+void ThreadPool::take_pieces() {
+    try {
+        for (;;) {
+            const std::size_t begin = next_.fetch_add(grain_);
+            if (begin >= count_) return;
+            (*body_)(begin, std::min(begin + grain_, count_));
+        }
+    } catch (...) {
+        std::lock_guard<std::mutex> lock(mutex_);
+        if (!error_) error_ = std::current_exception();
+        next_ = count_;
+    }
+}
+
+void ThreadPool::work() {
+    std::size_t seen = 0;
+    for (;;) {
+        {
+            std::unique_lock<std::mutex> lock(mutex_);
+            start_.wait(lock, [&] { return stopping_ || generation_ != seen; });
+            if (stopping_) return;
+            seen = generation_;
+        }
+        take_pieces();
+        {
+            std::lock_guard<std::mutex> lock(mutex_);
+            if (--busy_ == 0) done_.notify_one();
+        }
+    }
+}
+
+}  // namespace fontana

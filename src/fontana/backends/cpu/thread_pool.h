@@ -1,0 +1,48 @@
+// A fixed team of threads that runs one loop at a time.
+//
+// Our own, because the ready ones do not fit a library that lives inside other programs: oneTBB would meet the host's
+// own copy, OpenMP's runtime does not survive a fork and blinds the thread sanitizer, and neither tells which thread
+// count a simulation asked for without global state.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace fontana {
+
+class ThreadPool {
+ public:
+    // thread_count includes the caller of run().
+    explicit ThreadPool(int thread_count);
+    ~ThreadPool();
+    ThreadPool(const ThreadPool&) = delete;
+    ThreadPool& operator=(const ThreadPool&) = delete;
+
+    int thread_count() const { return static_cast<int>(workers_.size()) + 1; }
+
+    // Calls body(begin, end) for pieces of [0, count) of at most `grain`, on all threads, in any order. Returns when
+    // all is done; the first exception of a body is thrown here.
+    void run(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
+
+ private:
+    void work();
+    void take_pieces();
+
+    std::vector<std::thread> workers_;
+    std::mutex mutex_;
+    std::condition_variable start_, done_;
+    const std::function<void(std::size_t, std::size_t)>* body_ = nullptr;
+    std::size_t count_ = 0, grain_ = 1;
+    std::atomic<std::size_t> next_{0};
+    std::size_t generation_ = 0, busy_ = 0;
+    std::exception_ptr error_;
+    bool stopping_ = false;
+};
+
+}  // namespace fontana

@@ -1,0 +1,57 @@
+// dialect.h: the only file that knows three languages. With it one text compiles as C++17, OpenCL C 1.2 and CUDA.
+//
+// The subset all kernels keep to: values in, values out for formulas (OpenCL C 1.2 has no generic address space);
+// float literals with f; no references, templates, overloads, compound literals or static data; float4, never float3
+// (its size differs); only 4-byte members in structs that travel as arguments.
+#ifndef FONTANA_DIALECT_H
+#define FONTANA_DIALECT_H
+
+#if defined(__OPENCL_VERSION__)
+
+#define FN static inline
+#define KERNEL __kernel
+#define GLOBAL __global
+#define RESTRICT restrict
+#define THREAD_ARG
+#define THREAD_INDEX ((uint)get_global_id(0))
+#ifdef FONTANA_STRICT
+#pragma OPENCL FP_CONTRACT OFF
+#endif
+#define SQRT(a) sqrt(a)
+#define FLOOR(a) floor(a)
+#define ATOMIC_INCREMENT(p) atomic_inc(p)
+#define MAKE_FLOAT4(x, y, z, w) ((float4)((x), (y), (z), (w)))
+
+#elif defined(__CUDACC__)
+
+#define FN static __device__ __forceinline__
+#define KERNEL extern "C" __global__
+#define GLOBAL
+#define RESTRICT __restrict__
+#define THREAD_ARG
+#define THREAD_INDEX ((uint)(blockIdx.x * blockDim.x + threadIdx.x))
+#define SQRT(a) sqrtf(a)
+#define FLOOR(a) floorf(a)
+#define ATOMIC_INCREMENT(p) atomicAdd((p), 1u)
+#define MAKE_FLOAT4(x, y, z, w) make_float4((x), (y), (z), (w))
+typedef unsigned int uint;
+
+#else  // C++: a kernel is an inline function of the thread's index; the cpu backend loops over it.
+
+#include "backends/cpu/device_types.h"
+#define FN static inline
+#define KERNEL static inline
+#define GLOBAL
+#define RESTRICT __restrict
+#define THREAD_ARG const uint thread_index,
+#define THREAD_INDEX thread_index
+#define SQRT(a) __builtin_sqrtf(a)
+#define FLOOR(a) __builtin_floorf(a)
+#define MAKE_FLOAT4(x, y, z, w) (float4{(x), (y), (z), (w)})
+
+#endif
+
+FN float min_f(float a, float b) { return a < b ? a : b; }
+FN float max_f(float a, float b) { return a > b ? a : b; }
+
+#endif

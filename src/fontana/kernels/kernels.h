@@ -1,0 +1,11 @@
+// All device kernels, in the order a substep uses them. kernel_list.def names them for the host.
+#include "cells.h"
+#include "density.h"
+#include "dialect.h"
+#include "fluid_force.h"
+#include "integrate.h"
+#include "reduce.h"
+#include "reorder.h"
+#include "smoothing.h"
+#include "step_constants.h"
+#include "surface_tension.h"

@@ -1,0 +1,62 @@
+// Sums and maxima over all particles, in a fixed shape: lane k takes particles k, k + lanes, k + 2 lanes, ... in turn,
+// and the host adds the lanes up in order. So the result is the same on every device, whatever runs in parallel.
+#ifndef FONTANA_REDUCE_H
+#define FONTANA_REDUCE_H
+
+#include "step_constants.h"
+
+// Per lane: max |v|^2 and max |a|^2, for the time step. A NaN wins over every number, so that it is not lost.
+KERNEL void reduce_motion(THREAD_ARG const StepConstants c, const uint lane_count,
+                          GLOBAL const float4* RESTRICT velocity, GLOBAL const float4* RESTRICT acceleration,
+                          GLOBAL float* RESTRICT speed_squared, GLOBAL float* RESTRICT acceleration_squared) {
+    const uint lane = THREAD_INDEX;
+    if (lane >= lane_count) return;
+    float max_v = 0.0f, max_a = 0.0f;
+    for (uint i = lane; i < c.particle_count; i += lane_count) {
+        const float4 v = velocity[i], a = acceleration[i];
+        const float v_squared = v.x * v.x + v.y * v.y + v.z * v.z;
+        const float a_squared = a.x * a.x + a.y * a.y + a.z * a.z;
+        if (!(v_squared <= max_v)) max_v = v_squared;
+        if (!(a_squared <= max_a)) max_a = a_squared;
+    }
+    speed_squared[lane] = max_v;
+    acceleration_squared[lane] = max_a;
+}
+
+// Per lane: the smallest and largest position.
+KERNEL void reduce_bounds(THREAD_ARG const StepConstants c, const uint lane_count,
+                          GLOBAL const float4* RESTRICT position, GLOBAL float4* RESTRICT low,
+                          GLOBAL float4* RESTRICT high) {
+    const uint lane = THREAD_INDEX;
+    if (lane >= lane_count) return;
+    float4 a = MAKE_FLOAT4(1.0e30f, 1.0e30f, 1.0e30f, 0.0f), b = MAKE_FLOAT4(-1.0e30f, -1.0e30f, -1.0e30f, 0.0f);
+    for (uint i = lane; i < c.particle_count; i += lane_count) {
+        const float4 x = position[i];
+        a = MAKE_FLOAT4(min_f(a.x, x.x), min_f(a.y, x.y), min_f(a.z, x.z), 0.0f);
+        b = MAKE_FLOAT4(max_f(b.x, x.x), max_f(b.y, x.y), max_f(b.z, x.z), 0.0f);
+    }
+    low[lane] = a;
+    high[lane] = b;
+}
+
+// Per lane: (sum of m x, m y, m z, m), and (kinetic energy, sum and max of the density error, max |v|^2).
+KERNEL void reduce_diagnostics(THREAD_ARG const StepConstants c, const uint lane_count,
+                               GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT velocity,
+                               GLOBAL const float* RESTRICT density_in, GLOBAL float4* RESTRICT moment,
+                               GLOBAL float4* RESTRICT measure) {
+    const uint lane = THREAD_INDEX;
+    if (lane >= lane_count) return;
+    float4 m = MAKE_FLOAT4(0.0f, 0.0f, 0.0f, 0.0f), d = m;
+    for (uint i = lane; i < c.particle_count; i += lane_count) {
+        const float4 x = position[i], v = velocity[i];
+        const float v_squared = v.x * v.x + v.y * v.y + v.z * v.z;
+        const float error = max_f(0.0f, density_in[i] / c.rest_density - 1.0f);
+        m = MAKE_FLOAT4(m.x + x.w * x.x, m.y + x.w * x.y, m.z + x.w * x.z, m.w + x.w);
+        d = MAKE_FLOAT4(d.x + 0.5f * x.w * v_squared, d.y + error, max_f(d.z, error),
+                        v_squared <= d.w ? d.w : v_squared);
+    }
+    moment[lane] = m;
+    measure[lane] = d;
+}
+
+#endif
