@@ -1,0 +1,285 @@
+#include "simulation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include "io/bgeo.h"
+#include "io/checkpoint.h"
+#include "solver/constants.h"
+#include "solver/diagnostics.h"
+#include "util/error.h"
+
+namespace fontana {
+namespace {
+
+void require_finite(const float* values, std::size_t count, std::size_t components, const char* what) {
+    for (std::size_t k = 0; k < count * components; ++k)
+        if (!std::isfinite(values[k]))
+            fail(FONTANA_BAD_INPUT,
+                 std::string(what) + " of particle " + std::to_string(k / components) + " is not a finite number");
+}
+
+std::vector<float> scaled(const float* values, std::size_t count, double scale) {
+    std::vector<float> result(values, values + count);
+    if (scale != 1.0)
+        for (float& value : result) value = static_cast<float>(scale * static_cast<double>(value));
+    return result;
+}
+
+}  // namespace
+
+const std::vector<AttributeFacts>& attribute_table() {
+    static const std::vector<AttributeFacts> table = {
+        {"position", FONTANA_FLOAT, 3}, {"velocity", FONTANA_FLOAT, 3}, {"acceleration", FONTANA_FLOAT, 3},
+        {"force", FONTANA_FLOAT, 3},    {"density", FONTANA_FLOAT, 1},  {"pressure", FONTANA_FLOAT, 1},
+        {"mass", FONTANA_FLOAT, 1},     {"id", FONTANA_INT, 1},
+    };
+    return table;
+}
+
+std::size_t Simulation::add_collider(const fontana_collider& surface) {
+    colliders_.emplace_back(surface);
+    return colliders_.size() - 1;
+}
+
+Collider& Simulation::collider(std::size_t index) {
+    if (index >= colliders_.size())
+        fail(FONTANA_BAD_INPUT, "no collider " + std::to_string(index) + ": there are " +
+                                    std::to_string(colliders_.size()) + ", counted from 0");
+    return colliders_[index];
+}
+
+std::size_t Simulation::add_emitter(const fontana_emitter& settings) {
+    emitters_.emplace_back(settings, static_cast<std::uint32_t>(emitters_.size()));
+    emitted_batches_.push_back(0);
+    return emitters_.size() - 1;
+}
+
+double Simulation::scene_spacing() const {
+    return parameters.fluid_particle_spacing / parameters.time_simulation_scale;
+}
+
+std::uint64_t Simulation::emitted_by(std::int64_t frame) const {
+    const double duration = frame_duration(parameters), spacing = scene_spacing();
+    std::uint64_t total = 0;
+    for (const Emitter& emitter : emitters_)
+        total += emitter.due_count(static_cast<double>(frame) * duration, false, spacing, duration) *
+                 emitter.particles_per_batch(spacing);
+    return total;
+}
+
+std::size_t Simulation::particle_count() const { return solver_ ? solver_->particles().count() : 0; }
+
+void Simulation::add_particles(std::size_t count, const float* position, const float* velocity, const float* mass) {
+    if (count == 0) return;
+    require_finite(position, count, 3, "the position");
+    if (velocity) require_finite(velocity, count, 3, "the velocity");
+    for (std::size_t k = 0; mass && k < count; ++k)
+        if (!(mass[k] > 0.0f && std::isfinite(mass[k])))
+            fail(FONTANA_BAD_INPUT, "the mass of particle " + std::to_string(k) + " is " + std::to_string(mass[k]) +
+                                        "; expected kilograms above 0");
+    const double scale = parameters.time_simulation_scale;
+    const std::vector<float> at_rest(velocity ? 0 : 3 * count, 0.0f);
+    const std::vector<float> own_mass(mass ? 0 : count, static_cast<float>(fontana::particle_mass(parameters)));
+    const std::vector<float> x = scaled(position, 3 * count, scale);
+    const std::vector<float> v = scaled(velocity ? velocity : at_rest.data(), 3 * count, scale);
+    solver().particles().append(count, x.data(), v.data(), mass ? mass : own_mass.data(),
+                                static_cast<float>(parameters.fluid_rest_density));
+}
+
+void Simulation::set_force(std::size_t count, const float* force) {
+    if (force && count != particle_count())
+        fail(FONTANA_BAD_INPUT,
+             "forces for " + std::to_string(count) + " particles, but there are " + std::to_string(particle_count()));
+    std::vector<float4> by_id(force ? count : 0);
+    if (force) require_finite(force, count, 3, "the force");
+    for (std::size_t k = 0; k < by_id.size(); ++k) by_id[k] = {force[3 * k], force[3 * k + 1], force[3 * k + 2], 0.0f};
+    solver().particles().set_force(by_id);
+}
+
+Solver& Simulation::solver() {
+    const std::string key = parameters.solver_backend + " " + parameters.solver_precision + " " +
+                            std::to_string(parameters.solver_threads) + " " + std::to_string(parameters.solver_device) +
+                            " " + std::to_string(parameters.solver_profile);
+    if (solver_ && key == solver_key_) return *solver_;
+    BackendOptions options;
+    options.strict = parameters.solver_precision == "strict";
+    options.profile = parameters.solver_profile;
+    options.threads = parameters.solver_threads;
+    options.device = parameters.solver_device;
+    auto moved = std::make_unique<Solver>(make_backend(parameters.solver_backend, options));
+    if (solver_) {
+        moved->particles().upload(solver_->particles().download());
+        moved->neighborhood().set_shape(solver_->neighborhood().shape());
+    }
+    solver_ = std::move(moved);
+    solver_key_ = key;
+    return *solver_;
+}
+
+void Simulation::check() const {
+    check_time_step(parameters);
+    for (const Emitter& emitter : emitters_) emitter.check(scene_spacing());
+}
+
+void Simulation::emit_due(double time, bool inclusive) {
+    const double duration = frame_duration(parameters), spacing = scene_spacing();
+    EmittedParticles fresh;
+    for (std::size_t k = 0; k < emitters_.size(); ++k) {
+        const std::uint64_t due = emitters_[k].due_count(time, inclusive, spacing, duration);
+        for (; emitted_batches_[k] < due; ++emitted_batches_[k])
+            emitters_[k].emit(emitted_batches_[k], time, spacing, duration, fresh);
+    }
+    add_particles(fresh.position.size() / 3, fresh.position.data(), fresh.velocity.data(), nullptr);
+}
+
+void Simulation::begin_frame() {
+    check();
+    run_.frame_time = 0.0;
+    run_.substeps = 0;
+    run_.dt_min = frame_duration(parameters);
+    run_.dt_max = 0.0;
+    std::strncpy(run_.dt_limit, "frame", sizeof run_.dt_limit - 1);
+    emit_due(static_cast<double>(run_.frames_done) * frame_duration(parameters), true);
+    solver().begin_frame(parameters);
+    run_.frame_begun = 1;
+}
+
+void Simulation::take_substep() {
+    const double duration = frame_duration(parameters);
+    const double frame_start = static_cast<double>(run_.frames_done) * duration;
+    if (run_.substeps >= static_cast<std::uint32_t>(parameters.time_max_substeps) && parameters.time_substeps == 0)
+        fail(FONTANA_UNSTABLE, "frame " + std::to_string(run_.frames_done + 1) + " needs more than " +
+                                   std::to_string(parameters.time_max_substeps) +
+                                   " substeps (time.max_substeps): the limit '" + run_.dt_limit + "' asks for " +
+                                   std::to_string(run_.dt_min) + " s");
+    TimeStep step{duration - run_.frame_time, "frame"};
+    if (particle_count() > 0)
+        step = solver().substep(parameters, colliders_, frame_start + run_.frame_time, duration - run_.frame_time);
+    run_.frame_time += step.dt;
+    ++run_.substeps;
+    run_.dt_max = std::max(run_.dt_max, step.dt);
+    // Equal steps keep the name of the first: the last of a frame always ends with it.
+    if (run_.substeps == 1 || step.dt < run_.dt_min * (1.0 - 1e-9)) {
+        run_.dt_min = step.dt;
+        std::strncpy(run_.dt_limit, step.limit, sizeof run_.dt_limit - 1);
+    }
+    emit_due(std::min(frame_start + run_.frame_time, frame_start + duration), false);
+}
+
+fontana_frame_report Simulation::step_frame() {
+    const auto begin = std::chrono::steady_clock::now();
+    solver();
+    if (!run_.frame_begun) begin_frame();
+    const double duration = frame_duration(parameters);
+    const auto is_done = [&] {
+        if (parameters.time_substeps > 0) return run_.substeps >= static_cast<std::uint32_t>(parameters.time_substeps);
+        return run_.frame_time >= duration * (1.0 - 1e-9);
+    };
+    while (!is_done()) {
+        take_substep();
+        if (progress_ && progress_(std::min(1.0, run_.frame_time / duration)) && !is_done())
+            fail(FONTANA_INTERRUPTED, "interrupted in frame " + std::to_string(run_.frames_done + 1));
+    }
+    solver().backend().finish();
+    return finish_frame(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+}
+
+fontana_frame_report Simulation::finish_frame(double seconds) {
+    const double scale = parameters.time_simulation_scale;
+    const Diagnostics d = measure(solver().backend(), solver().particles(), make_constants(parameters));
+    if (!d.is_finite())
+        fail(FONTANA_UNSTABLE, "frame " + std::to_string(run_.frames_done + 1) +
+                                   " has particles whose position, velocity or density is no longer a number; use "
+                                   "more substeps or a smaller time.cfl_factor");
+    ++run_.frames_done;
+    run_.frame_begun = 0;
+    fontana_frame_report report{};
+    report.frame = run_.frames_done;
+    report.time = static_cast<double>(run_.frames_done) * frame_duration(parameters);
+    report.particle_count = particle_count();
+    report.substeps = run_.substeps;
+    report.dt_min = run_.dt_min;
+    report.dt_max = run_.dt_max;
+    report.dt_limit = run_.dt_limit;
+    report.density_error_mean = d.density_error_mean;
+    report.density_error_max = d.density_error_max;
+    report.max_speed = d.max_speed / scale;
+    report.kinetic_energy = d.kinetic_energy;
+    for (int k = 0; k < 3; ++k) report.centre_of_mass[k] = d.centre_of_mass[k] / scale;
+    report.seconds = seconds;
+    return report;
+}
+
+void Simulation::read_attribute(const std::string& name, void* out, std::size_t bytes) {
+    const std::vector<AttributeFacts>& table = attribute_table();
+    const auto facts =
+        std::find_if(table.begin(), table.end(), [&](const AttributeFacts& row) { return name == row.name; });
+    if (facts == table.end()) {
+        std::vector<std::string> names;
+        for (const AttributeFacts& row : table) names.emplace_back(row.name);
+        fail(FONTANA_BAD_INPUT, "no attribute '" + name + "': did you mean '" + nearest_word(name, names) + "'?");
+    }
+    const std::size_t count = particle_count(), values = count * static_cast<std::size_t>(facts->components);
+    if (bytes != values * 4)
+        fail(FONTANA_BAD_INPUT,
+             "attribute '" + name + "' takes " + std::to_string(values * 4) + " bytes, not " + std::to_string(bytes));
+    if (count == 0) return;
+
+    Particles& p = solver().particles();
+    Backend& backend = solver().backend();
+    const auto sorted = backend.allocate("attribute", values * 4);
+    const auto n = static_cast<std::uint32_t>(count);
+    if (name == "position") backend.launch(Kernel::vectors_by_id, count, {n, p.id(), p.position(), *sorted});
+    if (name == "velocity") backend.launch(Kernel::vectors_by_id, count, {n, p.id(), p.velocity(), *sorted});
+    if (name == "acceleration") backend.launch(Kernel::vectors_by_id, count, {n, p.id(), p.acceleration(), *sorted});
+    if (name == "density") backend.launch(Kernel::words_by_id, count, {n, p.id(), p.density(), *sorted});
+    if (name == "pressure") backend.launch(Kernel::fourth_by_id, count, {n, p.id(), p.packed_velocity(), *sorted});
+    if (name == "mass") backend.launch(Kernel::fourth_by_id, count, {n, p.id(), p.position(), *sorted});
+    if (name == "id") backend.launch(Kernel::words_by_id, count, {n, p.id(), p.id(), *sorted});
+    if (name == "force") {
+        const ParticleState state = p.download();
+        float* force = static_cast<float*>(out);
+        std::fill_n(force, values, 0.0f);
+        for (std::size_t k = 0; k < state.force_by_id.size(); ++k)
+            std::memcpy(force + 3 * k, &state.force_by_id[k], 12);
+        return;
+    }
+    backend.read(*sorted, out, values * 4);
+    const double scale = parameters.time_simulation_scale;
+    if (scale != 1.0 && facts->components == 3) {
+        float* vector = static_cast<float*>(out);
+        for (std::size_t k = 0; k < values; ++k) vector[k] = static_cast<float>(static_cast<double>(vector[k]) / scale);
+    }
+}
+
+void Simulation::count_neighbors(std::uint32_t* out) {
+    // The search sorts the particles; what was computed in the old order has to come back with them.
+    const ParticleState state = solver().particles().download();
+    solver().count_neighbors(parameters, out);
+    solver().particles().upload(state);
+}
+
+void Simulation::write_bgeo(const std::string& path) {
+    const std::size_t count = particle_count();
+    const double radius = 0.5 * sampling_distance(parameters) / parameters.time_simulation_scale;  // pscale is a radius
+    std::vector<float> position(3 * count), velocity(3 * count), density(count), pressure(count), mass(count);
+    std::vector<float> pscale(count, static_cast<float>(radius));
+    std::vector<std::int32_t> id(count);
+    read_attribute("position", position.data(), 12 * count);
+    read_attribute("velocity", velocity.data(), 12 * count);
+    read_attribute("density", density.data(), 4 * count);
+    read_attribute("pressure", pressure.data(), 4 * count);
+    read_attribute("mass", mass.data(), 4 * count);
+    read_attribute("id", id.data(), 4 * count);
+    fontana::write_bgeo(path, {count, position.data(), velocity.data(), id.data(), density.data(), pressure.data(),
+                               pscale.data(), mass.data()});
+}
+
+std::uint64_t Simulation::memory_for(std::uint64_t particle_count) {
+    return particle_count * Particles::bytes_per_particle() + Neighborhood::bytes(particle_count);
+}
+
+}  // namespace fontana

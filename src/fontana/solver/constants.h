@@ -1,0 +1,23 @@
+// From parameters to the numbers the kernels use.
+#pragma once
+
+#include "fontana.h"
+#include "kernels/step_constants.h"
+#include "scene/parameters.h"
+
+namespace fontana {
+
+// m. Given, or twice the particle spacing.
+double support_radius(const Parameters& parameters);
+// m. Half the support radius: the length every limit of the time step is made of.
+double sampling_distance(const Parameters& parameters);
+// kg. Given, or such that a lattice at the particle spacing has the rest density in the sum of eq. 2.8.
+double particle_mass(const Parameters& parameters);
+// s, of simulated time.
+double frame_duration(const Parameters& parameters);
+fontana_derived derive(const Parameters& parameters);
+
+// Everything but what changes by the substep: counts, dt and the grid.
+StepConstants make_constants(const Parameters& parameters);
+
+}  // namespace fontana

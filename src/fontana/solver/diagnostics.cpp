@@ -1,0 +1,94 @@
+#include "solver/diagnostics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace fontana {
+namespace {
+
+// Enough to fill a GPU, few enough to read back and add up at once. The shape of every sum depends on the particle
+// count alone.
+std::uint32_t lanes_for(std::size_t particle_count) {
+    return static_cast<std::uint32_t>(std::clamp<std::size_t>(particle_count / 4, 1, 4096));
+}
+
+template <typename T>
+std::vector<T> lanes(Backend& backend, const Buffer& buffer, std::uint32_t lane_count) {
+    std::vector<T> values(lane_count);
+    backend.read(buffer, values.data(), lane_count * sizeof(T));
+    return values;
+}
+
+// NaN wins, as in the kernels.
+double larger(double a, double b) { return b <= a ? a : b; }
+
+}  // namespace
+
+Bounds measure_bounds(Backend& backend, Particles& particles, StepConstants constants) {
+    constants.particle_count = static_cast<std::uint32_t>(particles.count());
+    const std::uint32_t lane_count = lanes_for(particles.count());
+    const auto low = backend.allocate("low", lane_count * 16), high = backend.allocate("high", lane_count * 16);
+    backend.launch(Kernel::reduce_bounds, lane_count, {constants, lane_count, particles.position(), *low, *high});
+    Bounds bounds{{1e30, 1e30, 1e30}, {-1e30, -1e30, -1e30}};
+    for (const float4& a : lanes<float4>(backend, *low, lane_count)) {
+        const float lane[3] = {a.x, a.y, a.z};
+        for (int k = 0; k < 3; ++k) bounds.low[k] = std::min(bounds.low[k], static_cast<double>(lane[k]));
+    }
+    for (const float4& b : lanes<float4>(backend, *high, lane_count)) {
+        const float lane[3] = {b.x, b.y, b.z};
+        for (int k = 0; k < 3; ++k) bounds.high[k] = std::max(bounds.high[k], static_cast<double>(lane[k]));
+    }
+    return bounds;
+}
+
+MotionExtremes measure_motion(Backend& backend, Particles& particles, StepConstants constants) {
+    constants.particle_count = static_cast<std::uint32_t>(particles.count());
+    const std::uint32_t lane_count = lanes_for(particles.count());
+    const auto speed = backend.allocate("speed", lane_count * 4);
+    const auto acceleration = backend.allocate("acceleration lanes", lane_count * 4);
+    backend.launch(Kernel::reduce_motion, lane_count,
+                   {constants, lane_count, particles.velocity(), particles.acceleration(), *speed, *acceleration});
+    MotionExtremes extremes{0.0, 0.0};
+    for (const float v : lanes<float>(backend, *speed, lane_count))
+        extremes.speed = larger(extremes.speed, static_cast<double>(v));
+    for (const float a : lanes<float>(backend, *acceleration, lane_count))
+        extremes.acceleration = larger(extremes.acceleration, static_cast<double>(a));
+    return {std::sqrt(extremes.speed), std::sqrt(extremes.acceleration)};
+}
+
+bool Diagnostics::is_finite() const {
+    return std::isfinite(mass) && std::isfinite(centre_of_mass[0]) && std::isfinite(centre_of_mass[1]) &&
+           std::isfinite(centre_of_mass[2]) && std::isfinite(kinetic_energy) && std::isfinite(density_error_mean) &&
+           std::isfinite(max_speed);
+}
+
+Diagnostics measure(Backend& backend, Particles& particles, StepConstants constants) {
+    Diagnostics d{};
+    if (particles.count() == 0) return d;
+    constants.particle_count = static_cast<std::uint32_t>(particles.count());
+    const std::uint32_t lane_count = lanes_for(particles.count());
+    const auto moment = backend.allocate("moment", lane_count * 16),
+               value = backend.allocate("measure", lane_count * 16);
+    backend.launch(
+        Kernel::reduce_diagnostics, lane_count,
+        {constants, lane_count, particles.position(), particles.velocity(), particles.density(), *moment, *value});
+    for (const float4& m : lanes<float4>(backend, *moment, lane_count)) {
+        d.centre_of_mass[0] += static_cast<double>(m.x);
+        d.centre_of_mass[1] += static_cast<double>(m.y);
+        d.centre_of_mass[2] += static_cast<double>(m.z);
+        d.mass += static_cast<double>(m.w);
+    }
+    for (double& coordinate : d.centre_of_mass) coordinate /= d.mass;
+    for (const float4& lane : lanes<float4>(backend, *value, lane_count)) {
+        d.kinetic_energy += static_cast<double>(lane.x);
+        d.density_error_mean += static_cast<double>(lane.y);
+        d.density_error_max = larger(d.density_error_max, static_cast<double>(lane.z));
+        d.max_speed = larger(d.max_speed, static_cast<double>(lane.w));
+    }
+    d.density_error_mean /= static_cast<double>(particles.count());
+    d.max_speed = std::sqrt(d.max_speed);
+    return d;
+}
+
+}  // namespace fontana

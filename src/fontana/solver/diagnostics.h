@@ -1,0 +1,32 @@
+// Numbers about all particles at once. One definition for the solver, the tests, the command line and the viewer.
+#pragma once
+
+#include "backends/backend.h"
+#include "kernels/step_constants.h"
+#include "solver/particles.h"
+
+namespace fontana {
+
+struct Bounds {
+    double low[3], high[3];  // m
+};
+Bounds measure_bounds(Backend& backend, Particles& particles, StepConstants constants);
+
+// The fastest and the most accelerated particle: m/s, m/s^2. NaN if any particle has a NaN.
+struct MotionExtremes {
+    double speed, acceleration;
+};
+MotionExtremes measure_motion(Backend& backend, Particles& particles, StepConstants constants);
+
+struct Diagnostics {
+    double mass;                // kg
+    double centre_of_mass[3];   // m
+    double kinetic_energy;      // J
+    double density_error_mean;  // of max(0, density / rest - 1)
+    double density_error_max;
+    double max_speed;  // m/s
+    bool is_finite() const;
+};
+Diagnostics measure(Backend& backend, Particles& particles, StepConstants constants);
+
+}  // namespace fontana

@@ -1,0 +1,41 @@
+// Who is near whom: the sorted grid of cells (thesis III.4 and III.6), or nothing at all for all pairs.
+#pragma once
+
+#include <memory>
+
+#include "backends/backend.h"
+#include "kernels/step_constants.h"
+#include "solver/particles.h"
+
+namespace fontana {
+
+// The box of cells that coordinates wrap around (kernels/cells.h): counts along the axes as powers of two.
+struct GridShape {
+    std::uint32_t bits_x = 2, bits_y = 2, bits_z = 2;
+    std::size_t cell_count() const { return std::size_t{1} << (bits_x + bits_y + bits_z); }
+};
+
+class Neighborhood {
+ public:
+    explicit Neighborhood(Backend& backend) : backend_(backend) {}
+
+    // Fits the box to the particles: as wide as they reach, but never more cells than a few a particle.
+    void fit(Particles& particles, const StepConstants& constants);
+    const GridShape& shape() const { return shape_; }
+    void set_shape(const GridShape& shape) { shape_ = shape; }
+
+    // Puts the grid into `constants`, sorts the particles by cell and finds where each cell starts.
+    void update(Particles& particles, StepConstants& constants);
+    Buffer& cell_start() { return *cell_start_; }
+
+    static std::uint64_t bytes(std::uint64_t particle_count);
+
+ private:
+    void reserve(std::size_t particle_count, std::size_t cell_count);
+
+    Backend& backend_;
+    GridShape shape_;
+    std::unique_ptr<Buffer> key_, order_, cell_start_;
+};
+
+}  // namespace fontana

@@ -1,0 +1,121 @@
+#include "solver/particles.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "util/error.h"
+
+namespace fontana {
+namespace {
+
+// Ids and indices are 32-bit, and three words a particle must be countable too.
+constexpr std::size_t k_most_particles = std::numeric_limits<std::uint32_t>::max() / 4;
+
+template <typename T>
+std::vector<T> read_all(Backend& backend, const Buffer& buffer, std::size_t count) {
+    std::vector<T> values(count);
+    backend.read(buffer, values.data(), count * sizeof(T));
+    return values;
+}
+
+template <typename T>
+void write_all(Backend& backend, Buffer& buffer, const std::vector<T>& values) {
+    backend.write(buffer, values.data(), values.size() * sizeof(T));
+}
+
+}  // namespace
+
+std::uint64_t Particles::bytes_per_particle() {
+    return 2 * (16 + 16 + 4)  // position, velocity, id, and where they are sorted to
+           + 4 + 3 * 16       // density, packed position and velocity, acceleration
+           + 16;              // force
+}
+
+void Particles::grow(std::unique_ptr<Buffer>& buffer, const char* name, std::size_t bytes_per_particle, bool keep) {
+    std::unique_ptr<Buffer> larger = backend_.allocate(name, capacity_ * bytes_per_particle);
+    if (keep && buffer && count_) backend_.copy(*buffer, *larger, count_ * bytes_per_particle);
+    buffer = std::move(larger);
+}
+
+void Particles::reserve(std::size_t capacity) {
+    if (capacity <= capacity_ && position_) return;
+    if (capacity > k_most_particles)
+        fail(FONTANA_BAD_INPUT, std::to_string(capacity) + " particles are more than the " +
+                                    std::to_string(k_most_particles) + " that ids and indices can count");
+    capacity_ = std::max({capacity, capacity_ + capacity_ / 2, std::size_t{64}});
+    grow(position_, "position", 16, true);
+    grow(velocity_, "velocity", 16, true);
+    grow(id_, "id", 4, true);
+    grow(density_, "density", 4, true);
+    grow(packed_position_, "packed position", 16, true);
+    grow(packed_velocity_, "packed velocity", 16, true);
+    grow(acceleration_, "acceleration", 16, true);
+    grow(force_by_id_, "force", has_force_ ? 16 : 0, true);
+    grow(other_position_, "sorted position", 16, false);
+    grow(other_velocity_, "sorted velocity", 16, false);
+    grow(other_id_, "sorted id", 4, false);
+}
+
+void Particles::append(std::size_t count, const float* position, const float* velocity, const float* mass,
+                       float rest_density) {
+    reserve(count_ + count);
+    std::vector<float4> x(count), v(count), at_rest(count);
+    std::vector<std::uint32_t> id(count);
+    std::vector<float> density(count, rest_density);
+    for (std::size_t k = 0; k < count; ++k) {
+        x[k] = {position[3 * k], position[3 * k + 1], position[3 * k + 2], mass[k]};
+        v[k] = {velocity[3 * k], velocity[3 * k + 1], velocity[3 * k + 2], 0.0f};
+        at_rest[k] = {v[k].x, v[k].y, v[k].z, 0.0f};
+        id[k] = static_cast<std::uint32_t>(count_ + k);
+    }
+    backend_.write(*position_, x.data(), count * 16, count_ * 16);
+    backend_.write(*velocity_, v.data(), count * 16, count_ * 16);
+    backend_.write(*id_, id.data(), count * 4, count_ * 4);
+    backend_.write(*density_, density.data(), count * 4, count_ * 4);
+    backend_.write(*packed_velocity_, at_rest.data(), count * 16, count_ * 16);
+    count_ += count;
+}
+
+void Particles::set_force(const std::vector<float4>& force_by_id) {
+    has_force_ = !force_by_id.empty();
+    force_by_id_ = backend_.allocate("force", has_force_ ? capacity_ * 16 : 0);
+    write_all(backend_, *force_by_id_, force_by_id);
+}
+
+ParticleState Particles::download() {
+    ParticleState state;
+    if (!count_) return state;
+    state.position = read_all<float4>(backend_, *position_, count_);
+    state.velocity = read_all<float4>(backend_, *velocity_, count_);
+    state.id = read_all<std::uint32_t>(backend_, *id_, count_);
+    state.density = read_all<float>(backend_, *density_, count_);
+    state.packed_velocity = read_all<float4>(backend_, *packed_velocity_, count_);
+    state.acceleration = read_all<float4>(backend_, *acceleration_, count_);
+    if (has_force_) state.force_by_id = read_all<float4>(backend_, *force_by_id_, count_);
+    return state;
+}
+
+void Particles::upload(const ParticleState& state) {
+    count_ = 0;
+    has_force_ = !state.force_by_id.empty();
+    reserve(state.position.size());
+    count_ = state.position.size();
+    write_all(backend_, *position_, state.position);
+    write_all(backend_, *velocity_, state.velocity);
+    write_all(backend_, *id_, state.id);
+    write_all(backend_, *density_, state.density);
+    write_all(backend_, *packed_velocity_, state.packed_velocity);
+    write_all(backend_, *acceleration_, state.acceleration);
+    set_force(state.force_by_id);
+}
+
+void Particles::reorder(const Buffer& order) {
+    backend_.launch(Kernel::gather_state, count_,
+                    {static_cast<std::uint32_t>(count_), order, *position_, *velocity_, *id_, *other_position_,
+                     *other_velocity_, *other_id_});
+    position_.swap(other_position_);
+    velocity_.swap(other_velocity_);
+    id_.swap(other_id_);
+}
+
+}  // namespace fontana

@@ -1,0 +1,66 @@
+// The particles on a device: their arrays, in the order of the cells they were last sorted by.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "backends/backend.h"
+#include "kernels/step_constants.h"
+
+namespace fontana {
+
+// What a simulation is, apart from its settings: enough to go on bit for bit, on this device or another.
+struct ParticleState {
+    std::vector<float4> position;  // x, y, z in m, mass in kg
+    std::vector<float4> velocity;  // m/s
+    std::vector<std::uint32_t> id;
+    std::vector<float> density;           // kg/m^3
+    std::vector<float4> packed_velocity;  // .w: pressure in Pa
+    std::vector<float4> acceleration;     // m/s^2
+    std::vector<float4> force_by_id;      // N; empty where no force was set
+};
+
+class Particles {
+ public:
+    explicit Particles(Backend& backend) : backend_(backend) {}
+
+    std::size_t count() const { return count_; }
+    // Particles still to be had without growing.
+    std::size_t capacity() const { return capacity_; }
+    static std::uint64_t bytes_per_particle();
+
+    // Ids go on from count(). position and velocity: 3 floats a particle, mass: 1. `rest_density` is what their density
+    // reads until the next substep.
+    void append(std::size_t count, const float* position, const float* velocity, const float* mass, float rest_density);
+    void set_force(const std::vector<float4>& force_by_id);
+    bool has_force() const { return has_force_; }
+
+    ParticleState download();
+    void upload(const ParticleState& state);
+
+    // Into the order given; density and what is computed from neighbours is stale until computed again.
+    void reorder(const Buffer& order);
+
+    Buffer& position() { return *position_; }
+    Buffer& velocity() { return *velocity_; }
+    Buffer& id() { return *id_; }
+    Buffer& density() { return *density_; }
+    Buffer& packed_position() { return *packed_position_; }
+    Buffer& packed_velocity() { return *packed_velocity_; }
+    Buffer& acceleration() { return *acceleration_; }
+    Buffer& force_by_id() { return *force_by_id_; }
+
+ private:
+    void reserve(std::size_t capacity);
+    void grow(std::unique_ptr<Buffer>& buffer, const char* name, std::size_t bytes_per_particle, bool keep);
+
+    Backend& backend_;
+    std::size_t count_ = 0, capacity_ = 0;
+    bool has_force_ = false;
+    std::unique_ptr<Buffer> position_, velocity_, id_, density_, packed_position_, packed_velocity_, acceleration_,
+        force_by_id_, other_position_, other_velocity_, other_id_;
+};
+
+}  // namespace fontana

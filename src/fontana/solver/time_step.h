@@ -1,0 +1,32 @@
+// How long a substep may be, and which limit says so.
+#pragma once
+
+#include "fontana.h"
+#include "scene/parameters.h"
+
+namespace fontana {
+
+struct TimeStep {
+    double dt;          // s
+    const char* limit;  // "fixed", "frame" (nothing else held it), "advection", "acceleration", ...
+};
+
+// Largest stable steps in seconds, cfl_factor included, for a fluid whose fastest particle has `speed` (m/s) and whose
+// most accelerated one `acceleration` (m/s^2). INFINITY where a limit does not apply.
+//   advection        0.4 d / speed
+//   acceleration     0.25 sqrt(H / acceleration)                     (Monaghan 1992)
+//   acoustic         0.4 d / c, c^2 the pressure constant
+//   viscosity        0.1 d^2 density / viscosity
+//   surface_tension  0.4 sqrt(density d^3 / (2 pi sigma))
+// with H the support radius and d = H / 2.
+fontana_time_step_limits time_step_limits(const Parameters& parameters, double speed, double acceleration);
+
+// The next substep when `remaining` seconds of the frame are left: the smallest limit, shortened so that the rest of
+// the frame divides evenly.
+TimeStep choose_time_step(const Parameters& parameters, double speed, double acceleration, double remaining);
+
+// Throws BAD_INPUT with the limit and a remedy where a fixed step, or the most substeps allowed, cannot integrate the
+// fluid stably.
+void check_time_step(const Parameters& parameters);
+
+}  // namespace fontana
