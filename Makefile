@@ -1,0 +1,47 @@
+# Thin: each target is a line or two over pip, cmake and pytest. Everything lands in .venv, build and out.
+PYTHON ?= python3
+BIN := .venv/bin
+# The environment's own cmake, ninja and compilers' helpers come first.
+export PATH := $(CURDIR)/$(BIN):$(PATH)
+
+.PHONY: demo test build unit sanitize lint format bench clean
+
+# The main job on the best device present: a rock falls into a fountain.
+demo: build
+	fontana run scenes/fountain_rock.json --backend auto --out out/demo
+
+# Everything: style, the tests on every backend, and the tests in C and C++ under sanitizers.
+test: lint unit sanitize
+
+build: .venv/ready
+	pip install --quiet '.[opencl]'
+
+unit: .venv/ready
+	pip install --quiet --config-settings=cmake.define.FONTANA_WERROR=ON '.[opencl,test]'
+	python -m pytest -q
+
+sanitize: .venv/ready
+	cmake --preset asan --log-level=WARNING && cmake --build --preset asan -j 2 && ctest --preset asan
+
+lint: .venv/ready
+	pip install --quiet 'ruff==0.17.6' 'clang-format==23.1.5'
+	ruff check . && ruff format --check .
+	git ls-files '*.c' '*.h' '*.cpp' ':!third_party' | xargs clang-format --dry-run --Werror
+
+format: .venv/ready
+	pip install --quiet 'ruff==0.17.6' 'clang-format==23.1.5'
+	ruff check --fix . && ruff format .
+	git ls-files '*.c' '*.h' '*.cpp' ':!third_party' | xargs clang-format -i
+
+# The thesis's Tables 1 and 2 anew.
+bench: build
+	fontana bench thesis --out benchmarks/results/local
+
+.venv/ready:
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Fontana needs Python 3.11 or later")'
+	$(PYTHON) -m venv .venv
+	pip install --quiet --upgrade pip cmake ninja
+	touch $@
+
+clean:
+	rm -rf build out .venv
