@@ -1,0 +1,73 @@
+#include "backends/opencl/opencl_backend.h"
+
+#include "backends/opencl/opencl_devices.h"
+#include "backends/opencl/opencl_kernel.h"
+#include "backends/opencl/opencl_program.h"
+#include "backends/opencl/opencl_queue.h"
+#include "backends/opencl/opencl_sort.h"
+#include "util/error.h"
+
+namespace fontana {
+namespace {
+
+class OpenClBackend : public Backend {
+ public:
+    OpenClBackend(OpenClDevice device, const BackendOptions& options)
+        : queue_(std::move(device), options.profile),
+          program_(build_opencl_program(queue_.context(), queue_.device(), options.strict)),
+          sort_(queue_.device(), program_.get()) {
+        for (int i = 0; i < static_cast<int>(Kernel::count); ++i) {
+            const char* name = kernel_facts(static_cast<Kernel>(i)).name;
+            kernels_.emplace_back(queue_.device(), program_.get(), name, name);
+        }
+    }
+
+    const DeviceInfo& device() const override { return queue_.device().info; }
+
+    std::unique_ptr<Buffer> allocate(const std::string& name, std::size_t bytes) override {
+        return queue_.allocate(name, bytes);
+    }
+    void write(Buffer& to, const void* from, std::size_t bytes, std::size_t offset) override {
+        queue_.write(to, from, bytes, offset);
+    }
+    void read(const Buffer& from, void* to, std::size_t bytes, std::size_t offset) override {
+        queue_.read(from, to, bytes, offset);
+    }
+    void copy(const Buffer& from, Buffer& to, std::size_t bytes) override { queue_.copy(from, to, bytes); }
+
+    void launch(Kernel kernel, std::size_t count, KernelArguments arguments) override {
+        kernels_[static_cast<std::size_t>(kernel)].launch(queue_, count, arguments);
+    }
+    void sort(const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start) override {
+        sort_.sort(queue_, key, count, key_count, order, start);
+    }
+
+    void finish() override { queue_.finish(); }
+    std::vector<ProfileRow> profile() const override { return queue_.profile(); }
+
+ private:
+    mutable CommandQueue queue_;  // collecting a profile waits for the queue, and may find the device lost
+    OpenClProgram program_;
+    DeviceSort sort_;
+    std::vector<DeviceKernel> kernels_;  // by Kernel
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> make_opencl_backend(const BackendOptions& options) {
+    std::vector<OpenClDevice> devices = find_opencl_devices();
+    const auto index = static_cast<std::size_t>(options.device);
+    if (index >= devices.size())
+        fail(FONTANA_DEVICE_UNAVAILABLE, "there is no OpenCL device " + std::to_string(options.device) +
+                                             ": expected 0" +
+                                             (devices.size() > 1 ? " to " + std::to_string(devices.size() - 1) : ""));
+    OpenClDevice& device = devices[index];
+    if (!device.info.available && !device.id)
+        fail(FONTANA_DEVICE_UNAVAILABLE, "no OpenCL device: " + device.info.reason);
+    if (!device.info.available)
+        fail(FONTANA_DEVICE_UNAVAILABLE,
+             "the OpenCL device '" + device.info.name + "' cannot be used: " + device.info.reason);
+    return std::make_unique<OpenClBackend>(std::move(device), options);
+}
+
+}  // namespace fontana

@@ -1,0 +1,111 @@
+#include "backends/opencl/opencl_program.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "backends/opencl/kernel_cache.h"
+#include "backends/opencl/opencl_error.h"
+#include "util/error.h"
+
+namespace fontana {
+
+// Made by cmake/EmbedKernels.cmake.
+extern const char* const opencl_kernel_source[];
+extern const std::size_t opencl_kernel_source_count;
+
+namespace {
+
+constexpr std::size_t k_shown_log_lines = 8;
+
+// NaNs must survive, so nothing here may assume finite numbers.
+std::string build_options(const OpenClDevice& device, bool strict) {
+    std::string options = "-cl-std=CL1.2 -DFONTANA_GROUP_SIZE=" + std::to_string(device.group_size);
+    if (!strict) return options + " -cl-mad-enable -cl-no-signed-zeros";
+    options += " -DFONTANA_STRICT";
+    if (device.rounds_divisions_correctly) options += " -cl-fp32-correctly-rounded-divide-sqrt";
+    return options;
+}
+
+// Everything the compiled program depends on.
+std::string cache_key(const OpenClDevice& device, const std::string& options) {
+    std::string text;
+    for (std::size_t i = 0; i < opencl_kernel_source_count; ++i) text += opencl_kernel_source[i];
+    for (const std::string& part : {options, device.info.name, device.info.driver, device.platform_version})
+        text += '\0' + part;
+    return KernelCache::key_of(text);
+}
+
+std::string first_lines(const std::string& text) {
+    std::size_t end = 0;
+    for (std::size_t line = 0; line < k_shown_log_lines && end < text.size(); ++line)
+        end = std::min(text.find('\n', end), text.size() - 1) + 1;
+    return text.substr(0, end);
+}
+
+std::string build_log(cl_program program, cl_device_id device) {
+    std::size_t bytes = 0;
+    opencl().clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &bytes);
+    std::string log(bytes, '\0');
+    if (opencl().clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, bytes, log.data(), nullptr) != CL_SUCCESS)
+        return "";
+    log.resize(std::min(log.size(), log.find('\0')));
+    return log;
+}
+
+[[noreturn]] void fail_to_build(cl_int code, cl_program program, const OpenClDevice& device, const KernelCache& cache,
+                                const std::string& key) {
+    if (code != CL_BUILD_PROGRAM_FAILURE) fail_to_start(code, device.info.name, "clBuildProgram");
+    const std::string log = build_log(program, device.id);
+    const std::string path = cache.save_log(key, log);
+    fail(FONTANA_DEVICE_UNAVAILABLE,
+         "the kernels do not compile for the OpenCL device '" + device.info.name + "' (" + device.info.driver +
+             (path.empty() ? "); its compiler says:\n" : "); the whole log is in " + path + " and begins:\n") +
+             first_lines(log));
+}
+
+OpenClProgram build_from_binary(cl_context context, const OpenClDevice& device, const std::string& options,
+                                const std::vector<unsigned char>& binary) {
+    if (binary.empty()) return nullptr;
+    const unsigned char* data = binary.data();
+    const std::size_t bytes = binary.size();
+    cl_int code = CL_SUCCESS;
+    OpenClProgram program(opencl().clCreateProgramWithBinary(context, 1, &device.id, &bytes, &data, nullptr, &code));
+    if (code != CL_SUCCESS) return nullptr;
+    code = opencl().clBuildProgram(program.get(), 1, &device.id, options.c_str(), nullptr, nullptr);
+    return code == CL_SUCCESS ? std::move(program) : nullptr;
+}
+
+std::vector<unsigned char> binary_of(cl_program program) {
+    std::size_t bytes = 0;
+    if (opencl().clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof bytes, &bytes, nullptr) != CL_SUCCESS)
+        return {};
+    std::vector<unsigned char> binary(bytes);
+    unsigned char* data = binary.data();
+    if (opencl().clGetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof data, &data, nullptr) != CL_SUCCESS) return {};
+    return binary;
+}
+
+}  // namespace
+
+OpenClProgram build_opencl_program(cl_context context, const OpenClDevice& device, bool strict) {
+    const KernelCache cache;
+    const std::string options = build_options(device, strict);
+    const std::string key = cache_key(device, options);
+    OpenClProgram cached = build_from_binary(context, device, options, cache.load(key));
+    if (cached) return cached;
+
+    cl_int code = CL_SUCCESS;
+    OpenClProgram program(opencl().clCreateProgramWithSource(
+        context, static_cast<cl_uint>(opencl_kernel_source_count),
+        const_cast<const char**>(static_cast<const char* const*>(opencl_kernel_source)), nullptr, &code));
+    if (code != CL_SUCCESS) fail_to_start(code, device.info.name, "clCreateProgramWithSource");
+    code = opencl().clBuildProgram(program.get(), 1, &device.id, options.c_str(), nullptr, nullptr);
+    if (code != CL_SUCCESS) fail_to_build(code, program.get(), device, cache, key);
+    if (!cache.is_open()) return program;  // making a binary costs some drivers as much as the build
+    const std::vector<unsigned char> binary = binary_of(program.get());
+    if (!binary.empty()) cache.store(key, binary);
+    return program;
+}
+
+}  // namespace fontana

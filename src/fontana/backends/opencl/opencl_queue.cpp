@@ -1,0 +1,144 @@
+#include "backends/opencl/opencl_queue.h"
+
+#include <cstdio>
+
+#include "backends/opencl/opencl_error.h"
+#include "util/error.h"
+
+namespace fontana {
+namespace {
+
+constexpr std::size_t k_allocation_unit = 16;  // bytes: a float4, and a multiple of what clears it
+
+std::size_t round_up(std::size_t value, std::size_t unit) { return (value + unit - 1) / unit * unit; }
+
+std::string size_text(std::size_t bytes) {
+    constexpr std::size_t k_mebibyte = 1u << 20;
+    if (bytes < k_mebibyte) return std::to_string(bytes) + " bytes";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f MiB", static_cast<double>(bytes) / k_mebibyte);
+    return text;
+}
+
+void require_inside(const Buffer& buffer, std::size_t offset, std::size_t bytes, const char* action) {
+    if (offset <= buffer.bytes() && bytes <= buffer.bytes() - offset) return;
+    fail(FONTANA_INTERNAL, std::string(action) + " of " + std::to_string(bytes) + " bytes at " +
+                               std::to_string(offset) + " is beyond the buffer " + buffer.name() + ", which has " +
+                               std::to_string(buffer.bytes()));
+}
+
+}  // namespace
+
+CommandQueue::CommandQueue(OpenClDevice device, bool profile) : device_(std::move(device)) {
+    cl_int code = CL_SUCCESS;
+    context_.reset(opencl().clCreateContext(nullptr, 1, &device_.id, nullptr, nullptr, &code));
+    if (code != CL_SUCCESS) fail_to_start(code, device_.info.name, "clCreateContext");
+    const cl_command_queue_properties properties = profile ? CL_QUEUE_PROFILING_ENABLE : 0;
+    queue_.reset(opencl().clCreateCommandQueue(context_.get(), device_.id, properties, &code));
+    if (code != CL_SUCCESS) fail_to_start(code, device_.info.name, "clCreateCommandQueue");
+    if (profile) profile_ = std::make_unique<LaunchProfile>();
+}
+
+std::unique_ptr<Buffer> CommandQueue::allocate(const std::string& name, std::size_t bytes) {
+    require_alive();
+    if (bytes > device_.largest_allocation)
+        fail(FONTANA_OUT_OF_MEMORY, "the buffer " + name + " needs " + size_text(bytes) + ", and '" +
+                                        device_.info.name + "' allows " + size_text(device_.largest_allocation) +
+                                        " in one piece: fewer particles, or another device");
+    const std::size_t room = round_up(std::max(bytes, k_allocation_unit), k_allocation_unit);
+    cl_int code = CL_SUCCESS;
+    OpenClMemory memory(opencl().clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, room, nullptr, &code));
+    check(code, "allocating", size_text(room) + " for " + name);
+    auto buffer = std::make_unique<OpenClBuffer>(name, bytes, std::move(memory));
+    const cl_uint zero = 0;
+    code =
+        opencl().clEnqueueFillBuffer(queue_.get(), buffer->memory(), &zero, sizeof zero, 0, room, 0, nullptr, nullptr);
+    check(code, "clearing", name);
+    return buffer;
+}
+
+void CommandQueue::write(Buffer& to, const void* from, std::size_t bytes, std::size_t offset) {
+    require_alive();
+    require_inside(to, offset, bytes, "a write");
+    if (bytes == 0) return;
+    check(opencl().clEnqueueWriteBuffer(queue_.get(), memory_of(to), CL_TRUE, offset, bytes, from, 0, nullptr, nullptr),
+          "writing", to.name());
+}
+
+void CommandQueue::read(const Buffer& from, void* to, std::size_t bytes, std::size_t offset) {
+    require_alive();
+    require_inside(from, offset, bytes, "a read");
+    if (bytes == 0) return;
+    check(opencl().clEnqueueReadBuffer(queue_.get(), memory_of(from), CL_TRUE, offset, bytes, to, 0, nullptr, nullptr),
+          "reading", from.name());
+}
+
+void CommandQueue::copy(const Buffer& from, Buffer& to, std::size_t bytes) {
+    require_alive();
+    require_inside(from, 0, bytes, "a copy");
+    require_inside(to, 0, bytes, "a copy");
+    if (bytes == 0) return;
+    check(opencl().clEnqueueCopyBuffer(queue_.get(), memory_of(from), memory_of(to), 0, 0, bytes, 0, nullptr, nullptr),
+          "copying", from.name());
+}
+
+void CommandQueue::clear(Buffer& buffer, std::size_t bytes, const std::string& label) {
+    require_alive();
+    require_inside(buffer, 0, bytes, "a clear");
+    if (bytes == 0) return;
+    const cl_uint zero = 0;
+    cl_event event = nullptr;
+    check(opencl().clEnqueueFillBuffer(queue_.get(), memory_of(buffer), &zero, sizeof zero, 0, bytes, 0, nullptr,
+                                       profile_ ? &event : nullptr),
+          "clearing", buffer.name());
+    note(event, label);
+}
+
+void CommandQueue::launch(cl_kernel kernel, std::size_t thread_count, std::size_t group_size,
+                          const std::string& label) {
+    require_alive();
+    if (thread_count == 0) return;
+    const std::size_t global_size = round_up(thread_count, group_size);
+    cl_event event = nullptr;
+    check(opencl().clEnqueueNDRangeKernel(queue_.get(), kernel, 1, nullptr, &global_size, &group_size, 0, nullptr,
+                                          profile_ ? &event : nullptr),
+          "running the kernel", label);
+    note(event, label);
+}
+
+void CommandQueue::finish() {
+    require_alive();
+    check(opencl().clFinish(queue_.get()), "waiting for", "the queue");
+}
+
+std::vector<ProfileRow> CommandQueue::profile() {
+    if (!profile_) return {};
+    collect_profile();
+    return profile_->rows();
+}
+
+void CommandQueue::note(cl_event event, const std::string& label) {
+    if (!event) return;
+    profile_->add(label, OpenClEvent(event));
+    if (profile_->is_full()) collect_profile();
+}
+
+void CommandQueue::collect_profile() {
+    finish();
+    check(profile_->collect(), "reading the time of", "a launch");
+}
+
+void CommandQueue::check(cl_int code, const char* doing, const std::string& name) {
+    if (code == CL_SUCCESS) return;
+    const std::string where =
+        "'" + device_.info.name + "' failed while " + doing + " " + name + ": " + opencl_error_name(code);
+    if (is_out_of_memory(code)) fail(FONTANA_OUT_OF_MEMORY, "out of memory: the OpenCL device " + where);
+    lost_ = "the OpenCL device is lost: " + where + "; continue from the last checkpoint";
+    fail(FONTANA_DEVICE_LOST, lost_);
+}
+
+void CommandQueue::require_alive() const {
+    if (!lost_.empty()) fail(FONTANA_DEVICE_LOST, lost_);
+}
+
+}  // namespace fontana
