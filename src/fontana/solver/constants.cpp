@@ -11,6 +11,8 @@ constexpr double k_pi = 3.14159265358979323846;
 
 // sum of W_poly6 over a cubic lattice, one point at the origin: 1 / (volume of a particle).
 double lattice_sum(double spacing, double support) {
+    // From here on the sum is the integral, 1, to more digits than a float has.
+    if (support > 32.0 * spacing) return 1.0 / (spacing * spacing * spacing);
     const int reach = static_cast<int>(std::ceil(support / spacing));
     double sum = 0.0;
     for (int z = -reach; z <= reach; ++z)
