@@ -1,0 +1,5 @@
+"""`python -m fontana` is the command `fontana`."""
+
+from fontana.cli import main
+
+main()

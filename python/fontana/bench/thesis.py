@@ -1,0 +1,170 @@
+"""`fontana bench thesis`: the thesis's Tables 1 and 2 and Figs. 15 and 16 anew."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+
+from fontana import _core
+from fontana.bench._machine import describe_conditions, missing_backends, note_end
+from fontana.bench._results import publish_json
+from fontana.bench._scenes import BENCH_SCENES, SPACING, bench_scene
+from fontana.bench._schemes import REFERENCE, SCHEMES, Scheme
+from fontana.bench._tables import print_results, progress_text
+from fontana.bench._text import count_list, word_list
+from fontana.bench._timing import SUBSTEPS_PER_FRAME, WARM_UP_SUBSTEPS, clock_substeps, significant
+from fontana.tables import suggestion
+
+RESULTS_NAME = "thesis.json"
+_PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
+
+
+@click.command(short_help="Four schemes in two scenes: the thesis's tables anew.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    default=Path("out/bench"),
+    show_default=True,
+    help="Folder of thesis.json and thesis.png.",
+)
+@click.option(
+    "--counts",
+    default="100,1000,10000,100000",
+    show_default=True,
+    callback=count_list,
+    metavar="N,N,...",
+    help="Particle counts: the rows.",
+)
+@click.option(
+    "--budget",
+    type=click.FloatRange(0, min_open=True),
+    default=5.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="For each number; a scheme that would need more for one substep is cut off.",
+)
+@click.option(
+    "--scenes",
+    "scene_names",
+    default="fountain,box",
+    show_default=True,
+    callback=word_list,
+    metavar="NAME,NAME",
+    help="Which tables.",
+)
+@click.option("--threads", type=click.IntRange(0), default=0, help="Threads of the CPU columns; 0: all cores.")
+def command(out: Path, counts: list[int], budget: float, scene_names: list[str], threads: int) -> None:
+    """Measure the thesis's four schemes in its two scenes: Tables 1 and 2, Figs. 15 and 16.
+
+    A frame is ten substeps, as in the thesis, whose display stopped at 24 frames a second; here nothing stops it. A
+    substep takes what the limits of stability allow, not a tenth of a frame of film: the work is the same. Ctrl-C keeps
+    what is measured.
+
+    \b
+    Examples:
+      fontana bench thesis
+      fontana bench thesis --counts 1000,1000000 --scenes box --budget 20
+      fontana bench plot out/bench/thesis.json
+    """
+    for name in scene_names or [""]:
+        if name not in BENCH_SCENES:
+            raise _core.BadInput(f'--scenes: no scene "{name}" to measure{suggestion(name, BENCH_SCENES)}')
+    path = out / RESULTS_NAME
+    results = describe_results(counts, budget, scene_names, threads)
+    publish_json(path, results)  # a folder that cannot be written is found now, not in the end
+    try:
+        measure_all(results, missing_backends(), lambda: publish_json(path, results))
+        note_end(results)
+    except KeyboardInterrupt:
+        note_end(results, "interrupted")
+    publish_json(path, results)
+    print_results(results)
+    _draw(results, path.with_suffix(".png"))
+    click.echo(f"written: {path}, {path.with_suffix('.png')}")
+    if results["state"] == "interrupted":
+        raise KeyboardInterrupt
+
+
+def _draw(results: dict, picture: Path) -> None:
+    from fontana.bench._thesis_figure import publish_figure  # matplotlib is slow to import
+
+    publish_figure(results, picture)
+
+
+def describe_results(counts: list[int], budget: float, scene_names: list[str], threads: int) -> dict:
+    """The results before the first number: conditions and settings."""
+    conditions = describe_conditions(["fontana", *sys.argv[1:]])
+    settings = {
+        "counts": counts,
+        "budget_seconds": budget,
+        "threads": threads,
+        "particle_spacing": SPACING,
+        "substeps_per_frame": SUBSTEPS_PER_FRAME,
+        "warm_up_substeps": WARM_UP_SUBSTEPS,
+    }
+    scenes: dict[str, list] = {name: [] for name in scene_names}
+    return {"benchmark": "thesis", "state": "running", **conditions, "settings": settings, "scenes": scenes}
+
+
+def measure_all(results: dict, missing: dict[str, str], publish: Callable[[], None]) -> None:
+    """Fills results["scenes"] number by number and calls `publish` after each row."""
+    for name, rows in results["scenes"].items():
+        for count in results["settings"]["counts"]:
+            scene = bench_scene(name, count)
+            rows.append({"particles": count, "cells": {}})
+            for scheme in SCHEMES:
+                cell = _cell(scheme, scene, rows, missing, results["settings"])
+                rows[-1]["cells"][scheme.name] = cell
+                click.echo(f"{name}, {count:,} particles, {scheme.name}: {progress_text(cell)}", err=True)
+            publish()
+
+
+def _cell(scheme: Scheme, scene: object, rows: list[dict], missing: dict[str, str], settings: dict) -> dict:
+    """One number of a table, or why there is none; adds what was learnt of the row to it."""
+    row = rows[-1]
+    if scheme.backend in missing:
+        return {"state": "not run", "reason": missing[scheme.backend]}
+    budget, threads = settings["budget_seconds"], settings["threads"]
+    try:
+        expected = _predict(scheme, scene, rows, budget, threads)
+        if expected > budget:
+            cell = {"state": "cut off", "predicted_substep_seconds": significant(expected)}
+        else:
+            simulation, dt = scene.build(scheme.backend, threads)
+            clocked = clock_substeps(simulation, dt, scheme.neighbors, budget)
+            cell = {"state": "measured", **clocked.rates(scene.particle_count)}
+            row.setdefault("mean_neighbors", significant(float(simulation.count_neighbors().mean())))
+            row.setdefault("substep_of_simulated_time", significant(dt))
+    except _core.FontanaError as error:
+        return {"state": "failed", "reason": str(error)}
+    return cell | _ratio(cell, row["cells"].get(REFERENCE, cell))
+
+
+def _predict(scheme: Scheme, scene: object, rows: list[dict], budget: float, threads: int) -> float:
+    """Seconds a substep will take, from the row before or, in the first, from a small scene."""
+    if len(rows) > 1:
+        known = rows[-2]["particles"], _substep_seconds(rows[-2]["cells"][scheme.name])
+    elif scene.particle_count > _PROBE_COUNT:
+        simulation, dt = bench_scene(scene.name, _PROBE_COUNT).build(scheme.backend, threads)
+        known = _PROBE_COUNT, clock_substeps(simulation, dt, scheme.neighbors, 0.1 * budget).median
+    else:
+        return 0.0
+    return (known[1] or 0.0) * (scene.particle_count / known[0]) ** scheme.exponent
+
+
+def _substep_seconds(cell: dict) -> float | None:
+    """Measured, or predicted where the scheme was cut off."""
+    if cell["state"] == "measured":
+        return cell["substep_seconds"]["median"]
+    return cell.get("predicted_substep_seconds")
+
+
+def _ratio(cell: dict, reference: dict) -> dict:
+    """How many times as fast as the first column; an estimate where that was cut off."""
+    own, other = _substep_seconds(cell), _substep_seconds(reference)
+    if cell["state"] != "measured" or not own or not other:
+        return {}
+    return {"ratio_to_cpu_simple": significant(other / own), "ratio_is_estimate": reference["state"] != "measured"}

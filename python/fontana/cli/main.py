@@ -1,0 +1,68 @@
+"""The command group, and the one place where an error becomes a sentence and an exit code."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import traceback
+
+import click
+
+from fontana import _core
+from fontana.cli import exit_codes
+from fontana.cli.bench import bench
+from fontana.cli.information import devices, explain, fluids, scenes, schema
+from fontana.cli.run import resume, run
+from fontana.cli.verify import verify
+
+_HELP = f"""Fontana simulates fluids for visual effects with particles (SPH), on the CPU and on the GPU.
+
+\b
+Examples:
+  fontana run fountain_rock                      simulate a bundled scene into out/fountain_rock
+  fontana run my_scene.json --set fluid.viscosity="300 cP" --frames 48
+  fontana run my_scene.json --dry-run            what it will cost, before it starts
+  fontana resume out/fountain_rock               go on after Ctrl-C or a crash
+  fontana explain fluid.viscosity                what a parameter means
+
+{exit_codes.HELP}"""
+
+
+@click.group(help=_HELP, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110})
+@click.version_option(_core.version(), prog_name="fontana")
+def cli() -> None:
+    pass
+
+
+for command in (run, resume, devices, verify, bench, scenes, schema, explain, fluids):
+    cli.add_command(command)
+
+
+def main() -> None:
+    """Runs the command line and leaves with the exit code."""
+    try:
+        code = cli.main(prog_name="fontana", standalone_mode=False) or exit_codes.OK
+    except click.ClickException as error:
+        error.show()
+        code = exit_codes.BAD_INPUT
+    except click.exceptions.Exit as error:
+        code = error.exit_code
+    except BrokenPipeError:  # `fontana schema | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = exit_codes.OK
+    except (Exception, KeyboardInterrupt) as error:
+        code = _report(error)
+    sys.exit(code)
+
+
+def _report(error: BaseException) -> int:
+    if isinstance(error, click.Abort):
+        error = KeyboardInterrupt()
+    if os.environ.get("FONTANA_DEBUG"):
+        traceback.print_exception(error)
+    code, text = exit_codes.exit_code(error), exit_codes.sentence(error)
+    if "--json" in sys.argv:
+        print(json.dumps({"event": "error", "code": code, "message": text}), flush=True)
+    print(f"fontana: {text}", file=sys.stderr)
+    return code

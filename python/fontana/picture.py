@@ -1,0 +1,160 @@
+"""The contact sheet of a run: a grid of frames, side view, the fluid coloured by its speed."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import numpy as np
+
+from fontana import _core
+from fontana.formats import read_frame
+from fontana.render import SPEED_COLOURS, SPEED_STOPS, Stage, View
+from fontana.runs.manifest import Manifest
+from fontana.scene import Scene, resolve
+
+COLUMNS = 4
+FRAME_COUNT = 8
+PANEL = (640, 440)  # pixels
+SUPERSAMPLING = 2
+SPHERE_SCALE = 1.15  # drawn radius over half the spacing: closes the gaps of a fluid at rest
+DARK, LIGHT_TEXT, DIM_TEXT = "#07090d", "#e8eef5", "#8b98a8"
+
+
+def contact_sheet(folder: Path) -> Path:
+    """Draws the run in `folder` (its run.json and frames) to NAME.png there, and returns the path.
+
+    Raises BadInput if the folder is not that of a run, IoError if files cannot be read or written.
+    """
+    manifest = Manifest.load(folder)
+    if manifest is None or not manifest.frames:
+        raise _core.BadInput(f'"{folder}" has no finished frames to draw')
+    scene = resolve(manifest.data["scene"], manifest.data["scene"]["name"])
+    records = _choose(manifest.frames, scene.view.get("frames"))
+    frames = [read_frame(folder / record["files"][0]["file"]) for record in records]
+    images, fast = _draw_frames(scene, records, frames)
+    path = folder / f"{scene.name}.png"
+    _core.publish_file(str(path), _sheet(scene, manifest, records, images, fast))
+    return path
+
+
+def _choose(frames: list[dict], wanted: list[int] | None) -> list[dict]:
+    """The wanted frames, with the last one for those that do not exist yet; else up to eight spread over the run."""
+    if wanted and min(wanted) <= len(frames):
+        return [frames[number - 1] for number in sorted({min(number, len(frames)) for number in wanted})]
+    count = min(FRAME_COUNT, len(frames))
+    return [frames[round(len(frames) * (k + 1) / count) - 1] for k in range(count)]
+
+
+def _draw_frames(scene: Scene, records: list[dict], frames: list[dict]) -> tuple[list[np.ndarray], float]:
+    simulation = scene.build()
+    speeds = [np.linalg.norm(frame["velocity"], axis=1) for frame in frames]
+    everything = np.concatenate(speeds)
+    fast = float(np.quantile(everything, 0.996)) if len(everything) else 1.0
+    bounds = _bounds(scene, frames)
+    view = _view(scene, bounds)
+    radius = 0.5 * simulation.get("fluid.particle_spacing") * SPHERE_SCALE
+    stage = Stage(view, scene.colliders, _centres(simulation, 0.0), bounds)
+    images = [
+        _shrink(stage.draw(_centres(simulation, record["time"]), frame["position"], speed, radius, fast))
+        for record, frame, speed in zip(records, frames, speeds, strict=True)
+    ]
+    return images, fast
+
+
+def _centres(simulation: _core.Simulation, time: float) -> list[np.ndarray]:
+    return [np.array(simulation.collider_centre(index, time)) for index in range(simulation.collider_count)]
+
+
+def _shrink(image: np.ndarray) -> np.ndarray:
+    """Averages blocks of pixels; what is left is smooth at its edges."""
+    height, width = PANEL[1], PANEL[0]
+    return image.reshape(height, SUPERSAMPLING, width, SUPERSAMPLING, 3).mean(axis=(1, 3))
+
+
+def _bounds(scene: Scene, frames: list[dict]) -> np.ndarray:
+    """The box of what is worth seeing: most of the fluid at all times, and the round colliders."""
+    points = np.concatenate([frame["position"][:: max(1, len(frame["position"]) // 5000)] for frame in frames])
+    corners = [np.quantile(points, [0.005, 0.995], axis=0)] if len(points) else []
+    for collider in scene.colliders:
+        if not collider["type"].startswith("cylinder"):
+            continue
+        centre = np.array(collider.get("centre", [0.0, 0.0, 0.0]))
+        radius = collider["radius"] + collider.get("thickness", 0.0)
+        low, high = centre - radius, centre + radius
+        low[1], high[1] = centre[1], collider.get("cutoff", centre[1])
+        corners.append(np.array([low, high]))
+    corners = np.concatenate(corners) if corners else np.array([[-1.0, 0.0, -1.0], [1.0, 1.0, 1.0]])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    _include_planes(scene, low, high)
+    margin = 0.12 * (high - low).max()
+    return np.array([low - [margin, 0.0, margin], high + margin])
+
+
+def _include_planes(scene: Scene, low: np.ndarray, high: np.ndarray) -> None:
+    """Widens the box to walls and floors that are not far from it."""
+    for axis, kind in enumerate(("plane_x", "plane_y", "plane_z")):
+        reach = high[axis] - low[axis]
+        places = [c.get("centre", [0.0, 0.0, 0.0])[axis] for c in scene.colliders if c["type"] == kind]
+        near = [place for place in places if low[axis] - reach < place < high[axis] + reach]
+        low[axis], high[axis] = min([low[axis], *near]), max([high[axis], *near])
+
+
+def _view(scene: Scene, bounds: np.ndarray) -> View:
+    """The scene's camera, or one that looks down a little at the whole."""
+    middle, size = bounds.mean(axis=0), np.ptp(bounds, axis=0)
+    opening = scene.view.get("field_of_view", 32.0)
+    target = np.array(scene.view.get("target", middle - [0.0, 0.12 * size[1], 0.0]))
+    reach = 0.5 * float(np.linalg.norm(size)) / np.tan(np.radians(opening) / 2)
+    aim = np.array([0.42, 0.48, 1.0])
+    eye = np.array(scene.view.get("eye", target + aim / np.linalg.norm(aim) * reach * 0.95))
+    if np.allclose(eye, target):
+        raise _core.BadInput("view: eye and target are the same place")
+    return View(eye, target, opening, (PANEL[0] * SUPERSAMPLING, PANEL[1] * SUPERSAMPLING))
+
+
+def _sheet(scene: Scene, manifest: Manifest, records: list[dict], images: list[np.ndarray], fast: float) -> bytes:
+    """The panels with their captions as PNG."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    columns = min(COLUMNS, len(images))
+    rows = -(-len(images) // columns)
+    head, foot, gap = 56, 40, 6
+    width = columns * PANEL[0] + (columns + 1) * gap
+    height = rows * (PANEL[1] + gap) + gap + head + foot
+    figure = pyplot.figure(figsize=(width / 100, height / 100), dpi=100, facecolor=DARK)
+    for index, (record, image) in enumerate(zip(records, images, strict=True)):
+        row, column = divmod(index, columns)
+        left = gap + column * (PANEL[0] + gap)
+        bottom = height - head - (row + 1) * (PANEL[1] + gap)
+        axes = figure.add_axes((left / width, bottom / height, PANEL[0] / width, PANEL[1] / height))
+        axes.imshow(image, interpolation="none", aspect="auto")
+        axes.set_axis_off()
+        caption = f"frame {record['frame']}   {record['time']:.2f} s"
+        axes.text(0.025, 0.045, caption, transform=axes.transAxes, color=LIGHT_TEXT, fontsize=13)
+    particles = records[-1]["particles"]
+    device = manifest.data["device"]["backend"]
+    title = f"{scene.name.replace('_', ' ')}"
+    figure.text(gap * 2 / width, 1 - head / 2 / height, title, color=LIGHT_TEXT, fontsize=20, va="center")
+    facts = f"{particles:,} particles   {device}"
+    figure.text(1 - gap * 2 / width, 1 - head / 2 / height, facts, color=DIM_TEXT, fontsize=14, va="center", ha="right")
+    _speed_scale(figure, fast, width, height, foot)
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", facecolor=DARK)
+    pyplot.close(figure)
+    return buffer.getvalue()
+
+
+def _speed_scale(figure, fast: float, width: int, height: int, foot: int) -> None:
+    """What the colours mean."""
+    share = np.linspace(0, 1, 256)
+    ramp = np.stack([np.interp(share, SPEED_STOPS, SPEED_COLOURS[:, k]) for k in range(3)], axis=1)
+    axes = figure.add_axes((0.44, 0.4 * foot / height, 0.12, 0.22 * foot / height))
+    axes.imshow(ramp[None], aspect="auto")
+    axes.set_axis_off()
+    y = 0.52 * foot / height
+    figure.text(0.435, y, "0", color=DIM_TEXT, fontsize=12, va="center", ha="right")
+    figure.text(0.565, y, f"{fast:.2g} m/s", color=DIM_TEXT, fontsize=12, va="center", ha="left")

@@ -1,0 +1,1 @@
+"""Running a scene into a folder: frames, checkpoints, a manifest, and how to continue after a stop."""

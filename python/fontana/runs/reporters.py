@@ -1,0 +1,190 @@
+"""What a run says while it runs: a bar for people at a terminal, lines for logs, JSON lines for programs."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections import deque
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn
+
+from fontana import _core
+from fontana.runs.folder import RunFolder
+from fontana.runs.manifest import MANIFEST_NAME, Manifest
+from fontana.runs.text import clock, describe_device, describe_fluid, frame_line, length
+from fontana.scene import Scene
+
+_RATE_WINDOW = 8  # frames over which speed and remaining time are averaged
+
+
+class Reporter:
+    """Says nothing; the base of the others, and what --quiet uses."""
+
+    def note(self, sentence: str) -> None:
+        """Something an artist should know."""
+
+    def start(self, scene: Scene, simulation: _core.Simulation, folder: RunFolder, done: int) -> None:
+        """The run begins after `done` finished frames."""
+
+    def substep(self, fraction: float) -> None:
+        """A share of the present frame is done."""
+
+    def frame(self, record: dict, frame_count: int) -> None:
+        """A frame is on disk; `record` is its entry in run.json."""
+
+    def finish(self, simulation: _core.Simulation, folder: RunFolder, manifest: Manifest, advice: str) -> None:
+        """All frames are on disk; `advice` is a command to try next."""
+
+    def close(self) -> None:
+        """Leaves the terminal as it was; safe to call twice."""
+
+
+class JsonReporter(Reporter):
+    """One JSON object a line: {"event": "start" | "note" | "frame" | "finish" | "error", ...}."""
+
+    def note(self, sentence: str) -> None:
+        self._emit("note", message=sentence)
+
+    def start(self, scene: Scene, simulation: _core.Simulation, folder: RunFolder, done: int) -> None:
+        device = simulation.device()
+        self._emit(
+            "start",
+            scene=scene.name,
+            out=str(folder.path),
+            frames=scene.frame_count,
+            done=done,
+            backend=device.backend,
+            device=device.name,
+            final_particle_count=simulation.emitted_by(scene.frame_count),
+        )
+
+    def frame(self, record: dict, frame_count: int) -> None:
+        self._emit("frame", **record)
+
+    def finish(self, simulation: _core.Simulation, folder: RunFolder, manifest: Manifest, advice: str) -> None:
+        self._emit("finish", frames=len(manifest.frames), manifest=str(folder.path / MANIFEST_NAME))
+
+    def _emit(self, event: str, **values: object) -> None:
+        print(json.dumps({"event": event} | values), flush=True)
+
+
+class LineReporter(Reporter):
+    """A line a frame: for logs, and wherever there is no terminal."""
+
+    def __init__(self) -> None:
+        self.console = Console(highlight=False, soft_wrap=True)
+        self._pace = Pace()
+
+    def note(self, sentence: str) -> None:
+        self.console.print(f"note: {sentence}", markup=False)
+
+    def start(self, scene: Scene, simulation: _core.Simulation, folder: RunFolder, done: int) -> None:
+        count = simulation.emitted_by(scene.frame_count)
+        self._pace = Pace(count)
+        spacing = length(simulation.get("fluid.particle_spacing"))
+        self.print(f"{scene.name}: {scene.frame_count} frames, {count:,} particles at the last, {spacing} apart")
+        self.print(f"fluid: {describe_fluid(simulation)}")
+        self.print(f"device: {describe_device(simulation)}")
+
+    def frame(self, record: dict, frame_count: int) -> None:
+        self._pace.add(record)
+        self.print(frame_line(record, frame_count, self._pace.rate, self._pace.remaining(frame_count)))
+
+    def finish(self, simulation: _core.Simulation, folder: RunFolder, manifest: Manifest, advice: str) -> None:
+        seconds = sum(frame.get("seconds", 0.0) for frame in manifest.frames)
+        work = sum(frame.get("particles", 0) * frame.get("substeps", 0) for frame in manifest.frames)
+        speed = f": {work / seconds / 1e6:.2f} M particle-substeps/s" if seconds > 0 else ""
+        frames = len(manifest.frames)
+        self.print("")
+        self.print(f"done: {frames} frames in {clock(seconds)} on {describe_device(simulation)}{speed}")
+        self.print(f"  frames   {folder.frame_path(1, manifest.data['formats'][0])} to {frames:04d}")
+        if folder.picture_path.exists():
+            self.print(f"  picture  {folder.picture_path}")
+        self.print(f"  report   {folder.path / MANIFEST_NAME}")
+        self._print_profile(manifest)
+        self.print(f"next: {advice}")
+
+    def _print_profile(self, manifest: Manifest) -> None:
+        for row in manifest.data.get("profile", []):
+            self.print(f"  {row['seconds']:9.3f} s  {row['launches']:8d} x  {row['name']}")
+
+    def print(self, text: str) -> None:
+        self.console.print(text, markup=False)
+
+
+class BarReporter(LineReporter):
+    """A bar on a terminal, above it the notes."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        columns = (TextColumn("{task.description}"), BarColumn(bar_width=None), TextColumn("{task.fields[text]}"))
+        self._progress = Progress(*columns, console=self.console, transient=False)
+        self._task = None
+        self._done = 0
+
+    def start(self, scene: Scene, simulation: _core.Simulation, folder: RunFolder, done: int) -> None:
+        super().start(scene, simulation, folder, done)
+        self._done = done
+        self._task = self._progress.add_task(scene.name, total=scene.frame_count, completed=done, text="first frame")
+        self._progress.start()
+
+    def substep(self, fraction: float) -> None:
+        self._progress.update(self._task, completed=self._done + fraction)
+
+    def frame(self, record: dict, frame_count: int) -> None:
+        self._pace.add(record)
+        self._done = record["frame"]
+        text = frame_line(record, frame_count, self._pace.rate, self._pace.remaining(frame_count))
+        self._progress.update(self._task, completed=self._done, text=text)
+
+    def close(self) -> None:
+        self._progress.stop()
+
+    def finish(self, simulation: _core.Simulation, folder: RunFolder, manifest: Manifest, advice: str) -> None:
+        self.close()
+        super().finish(simulation, folder, manifest, advice)
+
+
+class Pace:
+    """Speed over the last frames, and how long the rest will take at it."""
+
+    def __init__(self, final_particle_count: int = 0) -> None:
+        self._final_particle_count = final_particle_count
+        self._recent: deque[tuple[dict, float]] = deque(maxlen=_RATE_WINDOW)
+        self._clock = time.monotonic()
+
+    def add(self, record: dict) -> None:
+        now = time.monotonic()
+        self._recent.append((record, now - self._clock))
+        self._clock = now
+
+    @property
+    def rate(self) -> float:
+        """Particle-substeps a second, of the simulation alone."""
+        seconds = sum(record["seconds"] for record, _ in self._recent)
+        return _work(self._recent) / seconds if seconds > 0 else 0.0
+
+    def remaining(self, frame_count: int) -> float:
+        """Seconds, writing included. Particles are taken to grow evenly to their final count."""
+        elapsed, work = sum(seconds for _, seconds in self._recent), _work(self._recent)
+        if not self._recent or work == 0:
+            return 0.0
+        record = self._recent[-1][0]
+        substeps = sum(record["substeps"] for record, _ in self._recent) / len(self._recent)
+        particles = 0.5 * (record["particles"] + max(self._final_particle_count, record["particles"]))
+        return (frame_count - record["frame"]) * substeps * particles * elapsed / work
+
+
+def _work(recent: deque[tuple[dict, float]]) -> int:
+    return sum(record["particles"] * record["substeps"] for record, _ in recent)
+
+
+def make_reporter(as_json: bool, quiet: bool) -> Reporter:
+    """The one that fits where the output goes."""
+    if as_json:
+        return JsonReporter()
+    if quiet:
+        return Reporter()
+    return BarReporter() if sys.stdout.isatty() else LineReporter()
