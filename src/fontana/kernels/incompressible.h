@@ -9,20 +9,20 @@
 #define FONTANA_INCOMPRESSIBLE_H
 
 #include "neighbor_list.h"
+#include "pair.h"
 #include "walls.h"
 
-typedef struct Pair {
-    float dx, dy, dz;  // x_ij, m
-    float r;           // m
-} Pair;
-
-FN Pair pair_of(float4 x_i, float4 x_j) {
-    Pair pair;
-    pair.dx = x_i.x - x_j.x;
-    pair.dy = x_i.y - x_j.y;
-    pair.dz = x_i.z - x_j.z;
-    pair.r = SQRT(pair.dx * pair.dx + pair.dy * pair.dy + pair.dz * pair.dz);
-    return pair;
+// What spline_density ends with: the sums over neighbours become its three results.
+FN void store_density(const StepConstants c, uint i, float volume, float relative, Real3 s, float squares,
+                      WallTerm walls, GLOBAL float* RESTRICT density_out, GLOBAL float4* RESTRICT factor,
+                      GLOBAL float* RESTRICT wall_rate) {
+    const float x = s.x + walls.gradient_x, y = s.y + walls.gradient_y, z = s.z + walls.gradient_z;
+    const float diagonal = x * x + y * y + z * z + volume * squares;
+    // Next to nobody the system is singular; such a particle feels no pressure.
+    const float inverse = diagonal * c.support_radius_squared > 4.0e-4f ? 1.0f / diagonal : 0.0f;
+    density_out[i] = relative * c.rest_density;
+    factor[i] = MAKE_FLOAT4(x, y, z, inverse);
+    wall_rate[i] = walls.rate;
 }
 
 // Density; `volume_position` = x, y, z, V; `factor` = S, 1 / D (0 where a particle is all but alone); `wall_rate`.
@@ -36,23 +36,16 @@ KERNEL void spline_density(THREAD_ARG const StepConstants c, GLOBAL const float4
     const float4 x_i = volume_position[i];
     const WallTerm walls = walls_at(c, collider, position[i]);
     float relative = x_i.w * kernel_value(c, 0.0f) + walls.share, squares = 0.0f;
-    float sx = walls.gradient_x, sy = walls.gradient_y, sz = walls.gradient_z;
+    Real3 s = zero_vector();
     const uint count = list_length(c, neighbor_count[i]);
     for (uint k = 0u; k < count; ++k) {
         const float4 x_j = volume_position[neighbor(c, list, i, k)];
         const Pair pair = pair_of(x_i, x_j);
         relative += x_j.w * kernel_value(c, pair.r);
-        const float g = kernel_gradient(c, pair.r), v = x_j.w * g;
-        sx += v * pair.dx;
-        sy += v * pair.dy;
-        sz += v * pair.dz;
-        squares += v * g * pair.r * pair.r;
+        s = add_gradient(s, c, x_j.w, pair);
+        squares += gradient_squared_term(c, x_j.w, pair);
     }
-    const float diagonal = sx * sx + sy * sy + sz * sz + x_i.w * squares;
-    density_out[i] = relative * c.rest_density;
-    const float inverse = diagonal * c.support_radius_squared > 4.0e-4f ? 1.0f / diagonal : 0.0f;
-    factor[i] = MAKE_FLOAT4(sx, sy, sz, inverse);
-    wall_rate[i] = walls.rate;
+    store_density(c, i, x_i.w, relative, s, squares, walls, density_out, factor, wall_rate);
 }
 
 KERNEL void pack_volume(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
@@ -72,10 +65,8 @@ FN float divergence_at(const StepConstants c, uint i, GLOBAL const uint* RESTRIC
     const uint count = list_length(c, neighbor_count[i]);
     for (uint k = 0u; k < count; ++k) {
         const uint j = neighbor(c, list, i, k);
-        const float4 x_j = volume_position[j], a_j = field[j];
-        const Pair pair = pair_of(x_i, x_j);
-        const float v = x_j.w * kernel_gradient(c, pair.r);
-        sum -= v * (pair.dx * a_j.x + pair.dy * a_j.y + pair.dz * a_j.z);
+        const float4 x_j = volume_position[j];
+        sum -= divergence_term(c, x_j.w, pair_of(x_i, x_j), field[j]);
     }
     return sum;
 }
@@ -90,27 +81,26 @@ KERNEL void density_rate(THREAD_ARG const StepConstants c, GLOBAL const float4* 
     rate[i] = divergence_at(c, i, neighbor_count, list, volume_position, factor, velocity) - wall_rate[i];
 }
 
-// G u, into `acceleration` (without the minus sign).
+FN void store_gradient(uint i, float u_i, float4 s, Real3 sum, GLOBAL float4* RESTRICT gradient) {
+    gradient[i] = MAKE_FLOAT4(u_i * s.x + sum.x, u_i * s.y + sum.y, u_i * s.z + sum.z, 0.0f);
+}
+
+// G u, into `gradient`.
 KERNEL void pressure_gradient(THREAD_ARG const StepConstants c, GLOBAL const float* RESTRICT u,
                               GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
                               GLOBAL const float4* RESTRICT volume_position, GLOBAL const float4* RESTRICT factor,
                               GLOBAL float4* RESTRICT gradient) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
-    const float4 x_i = volume_position[i], s = factor[i];
-    const float u_i = u[i];
-    float x = u_i * s.x, y = u_i * s.y, z = u_i * s.z;
+    const float4 x_i = volume_position[i];
+    Real3 sum = zero_vector();
     const uint count = list_length(c, neighbor_count[i]);
     for (uint k = 0u; k < count; ++k) {
         const uint j = neighbor(c, list, i, k);
         const float4 x_j = volume_position[j];
-        const Pair pair = pair_of(x_i, x_j);
-        const float v = x_j.w * u[j] * kernel_gradient(c, pair.r);
-        x += v * pair.dx;
-        y += v * pair.dy;
-        z += v * pair.dz;
+        sum = add_gradient(sum, c, x_j.w * u[j], pair_of(x_i, x_j));
     }
-    gradient[i] = MAKE_FLOAT4(x, y, z, 0.0f);
+    store_gradient(i, u[i], factor[i], sum, gradient);
 }
 
 // v -= dt G u, with G u in `gradient`.
@@ -122,6 +112,11 @@ KERNEL void push_by_pressure(THREAD_ARG const StepConstants c, GLOBAL const floa
     velocity[i] = MAKE_FLOAT4(v.x - c.dt * g.x, v.y - c.dt * g.y, v.z - c.dt * g.z, v.w);
 }
 
+FN void store_viscosity(const StepConstants c, uint i, Real3 sum, GLOBAL float4* RESTRICT acceleration) {
+    const float scale = 10.0f * c.viscosity * c.inverse_rest_density;
+    acceleration[i] = MAKE_FLOAT4(scale * sum.x, scale * sum.y, scale * sum.z, 0.0f);
+}
+
 // Viscosity as Monaghan (2005) writes the Laplacian, 2 (dimension + 2) = 10:
 //   a_i = 10 nu sum_j V_j (v_ij . x_ij) / (r^2 + 0.01 H^2) grad W_ij. Starts the acceleration.
 KERNEL void laplacian_viscosity(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT velocity,
@@ -130,21 +125,15 @@ KERNEL void laplacian_viscosity(THREAD_ARG const StepConstants c, GLOBAL const f
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
     const float4 x_i = volume_position[i], v_i = velocity[i];
-    float x = 0.0f, y = 0.0f, z = 0.0f;
+    Real3 sum = zero_vector();
     const uint count = list_length(c, neighbor_count[i]);
     for (uint k = 0u; k < count; ++k) {
         const uint j = neighbor(c, list, i, k);
-        const float4 x_j = volume_position[j], v_j = velocity[j];
+        const float4 x_j = volume_position[j];
         const Pair pair = pair_of(x_i, x_j);
-        const float approach = (v_i.x - v_j.x) * pair.dx + (v_i.y - v_j.y) * pair.dy + (v_i.z - v_j.z) * pair.dz;
-        const float f =
-            x_j.w * approach * kernel_gradient(c, pair.r) / (pair.r * pair.r + 0.01f * c.support_radius_squared);
-        x += f * pair.dx;
-        y += f * pair.dy;
-        z += f * pair.dz;
+        sum = add_gradient(sum, c, viscosity_weight(c, x_j.w, pair, v_i, velocity[j]), pair);
     }
-    const float scale = 10.0f * c.viscosity * c.inverse_rest_density;
-    acceleration[i] = MAKE_FLOAT4(scale * x, scale * y, scale * z, 0.0f);
+    store_viscosity(c, i, sum, acceleration);
 }
 
 // v += dt a and the drag factor: the prediction that the pressure corrects.

@@ -13,6 +13,12 @@ FN uint list_length(const StepConstants c, uint neighbor_count) {
     return neighbor_count < c.list_capacity ? neighbor_count : c.list_capacity;
 }
 
+// Fills a list up to a multiple of the padding with the particle itself, which adds nothing to a gradient.
+FN void pad_list(const StepConstants c, GLOBAL uint* RESTRICT list, uint i, uint count) {
+    for (; count < c.list_capacity && count % c.list_padding != 0u; ++count)
+        list[i * c.list_particle_stride + count * c.list_neighbor_stride] = i;
+}
+
 // Everyone within the support radius but the particle itself, in the order of the cells.
 KERNEL void build_neighbor_list(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
                                 GLOBAL const uint* RESTRICT cell_start, GLOBAL uint* RESTRICT neighbor_count,
@@ -35,6 +41,7 @@ KERNEL void build_neighbor_list(THREAD_ARG const StepConstants c, GLOBAL const f
         }
     }
     neighbor_count[i] = count;
+    pad_list(c, list, i, count);
 }
 
 #endif

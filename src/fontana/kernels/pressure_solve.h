@@ -39,6 +39,15 @@ KERNEL void divergence_step(THREAD_ARG const StepConstants c, const float relaxa
     u[i] = relative > 0.63f ? relaxation * max_f(rate[i], 0.0f) * c.inverse_dt * factor[i].w : 0.0f;
 }
 
+FN void store_jacobi_step(uint i, float relaxation, float k_u, GLOBAL const float4* RESTRICT factor,
+                          GLOBAL const float* RESTRICT target, GLOBAL const float* RESTRICT u,
+                          GLOBAL float* RESTRICT residual, GLOBAL float* RESTRICT step) {
+    const float u_i = u[i], inverse_diagonal = factor[i].w, r = target[i] - k_u;
+    const bool is_free = inverse_diagonal == 0.0f;
+    residual[i] = is_free ? 0.0f : r > 0.0f ? r : u_i > 0.0f ? -r : 0.0f;
+    step[i] = is_free ? -u_i : max_f(0.0f, u_i + relaxation * inverse_diagonal * r) - u_i;
+}
+
 // K u from G u, the residual, and the relaxed Jacobi step f = max(0, u + omega r / D) - u.
 KERNEL void jacobi_step(THREAD_ARG const StepConstants c, const float relaxation,
                         GLOBAL const float4* RESTRICT gradient, GLOBAL const uint* RESTRICT neighbor_count,
@@ -47,15 +56,8 @@ KERNEL void jacobi_step(THREAD_ARG const StepConstants c, const float relaxation
                         GLOBAL const float* RESTRICT u, GLOBAL float* RESTRICT residual, GLOBAL float* RESTRICT step) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
-    const float u_i = u[i], inverse_diagonal = factor[i].w;
-    if (inverse_diagonal == 0.0f) {
-        residual[i] = 0.0f;
-        step[i] = -u_i;
-        return;
-    }
-    const float r = target[i] - divergence_at(c, i, neighbor_count, list, volume_position, factor, gradient);
-    residual[i] = r > 0.0f ? r : (u_i > 0.0f ? -r : 0.0f);
-    step[i] = max_f(0.0f, u_i + relaxation * inverse_diagonal * r) - u_i;
+    const float k_u = divergence_at(c, i, neighbor_count, list, volume_position, factor, gradient);
+    store_jacobi_step(i, relaxation, k_u, factor, target, u, residual, step);
 }
 
 // Per lane: puts this iteration's differences (if it is not the first) into slot `slot` of the history, and adds up the

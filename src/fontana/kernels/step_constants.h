@@ -38,6 +38,7 @@ typedef struct StepConstants {
     uint list_capacity;                          // neighbours a particle's list has room for
     uint list_particle_stride;  // the k-th neighbour of particle i is at i * particle stride + k * neighbor stride
     uint list_neighbor_stride;
+    uint list_padding;                // lists are filled up to a multiple of this
     uint grid_shift_y, grid_shift_z;  // where y and z stand in a cell's key
 } StepConstants;
 

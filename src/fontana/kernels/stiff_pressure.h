@@ -26,6 +26,12 @@ KERNEL void predict_position(THREAD_ARG const StepConstants c, GLOBAL const floa
                                x.z + c.dt * (v.z - c.dt * g.z), x.w);
 }
 
+FN void store_correction(uint i, float delta, float relative, GLOBAL float* RESTRICT u,
+                         GLOBAL float* RESTRICT residual) {
+    u[i] = max_f(0.0f, u[i] + delta * (relative - 1.0f));
+    residual[i] = max_f(0.0f, relative - 1.0f);
+}
+
 // The relative density there and the correction u += delta (relative - 1), delta (m^2) for a full neighbourhood
 // (Solenthaler and Pajarola 2009, eq. 8). The walls move too: their share at the predicted place is that of the present
 // surfaces. `residual` gets what is above rest density.
@@ -42,8 +48,7 @@ KERNEL void correct_pressure(THREAD_ARG const StepConstants c, const float delta
         const float4 x_j = predicted[neighbor(c, list, i, k)];
         relative += x_j.w * kernel_value(c, pair_of(x_i, x_j).r);
     }
-    u[i] = max_f(0.0f, u[i] + delta * (relative - 1.0f));
-    residual[i] = max_f(0.0f, relative - 1.0f);
+    store_correction(i, delta, relative, u, residual);
 }
 
 #endif

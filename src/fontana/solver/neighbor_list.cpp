@@ -9,6 +9,7 @@ namespace fontana {
 namespace {
 
 constexpr std::uint32_t k_usual_capacity = 48;
+constexpr std::uint32_t k_padding = 8;  // the widest vector a processor's loops use
 // Indices into the lists are 32-bit.
 constexpr std::uint64_t k_most_entries = 0xffffffffu;
 
@@ -32,6 +33,7 @@ void NeighborList::set_layout(StepConstants& constants) const {
     constants.list_capacity = capacity_;
     constants.list_particle_stride = side_by_side ? 1 : capacity_;
     constants.list_neighbor_stride = side_by_side ? rows : 1;
+    constants.list_padding = side_by_side ? 1 : k_padding;
 }
 
 std::uint32_t NeighborList::longest(std::size_t particle_count) {
@@ -47,7 +49,7 @@ void NeighborList::build(Particles& particles, Neighborhood& neighborhood, StepC
                         {constants, particles.position(), neighborhood.cell_start(), *count_, *list_});
         const std::uint32_t needed = longest(count);
         if (needed <= capacity_) return;
-        capacity_ = needed + needed / 4;
+        capacity_ = (needed + needed / 4 + k_padding) / k_padding * k_padding;
         list_.reset();
     }
 }
