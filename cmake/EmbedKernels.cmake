@@ -11,9 +11,6 @@
 #
 # The work is done when the library is built, by this same file as a script, so that an edited kernel is embedded anew.
 
-# The C++ standard promises string literals of 65535 bytes, some compilers only 16380.
-set(longest_literal 8000)
-
 function(embed_kernels)
     cmake_parse_arguments(embed "" "OUTPUT;SYMBOL;FOLDER" "ROOTS" ${ARGN})
     file(GLOB texts CONFIGURE_DEPENDS "${embed_FOLDER}/*.h")
@@ -30,6 +27,7 @@ endfunction()
 # Puts `kernel_text`, as raw string literals, and their count into the caller's `literals` and `literal_count`.
 function(make_literals)
     get_property(rest GLOBAL PROPERTY kernel_text)
+    set(longest_literal 8000)  # the C++ standard promises 65535 bytes, some compilers have only 16380
     set(source "")
     set(count 0)
     while(NOT rest STREQUAL "")

@@ -34,6 +34,12 @@ def scheme(request):
     return request.param
 
 
+@pytest.fixture(scope="session")
+def opencl_device():
+    """For tests of the OpenCL backend alone."""
+    require_backend("opencl")
+
+
 @pytest.fixture
 def make_simulation():
     """A bare simulation: parameters by name with dots as double underscores, no colliders, no emitters."""

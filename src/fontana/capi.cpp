@@ -14,6 +14,7 @@
 #include "simulation.h"
 #include "solver/constants.h"
 #include "util/error.h"
+#include "util/sentence.h"
 
 struct fontana_simulation {
     fontana::Simulation simulation;
@@ -28,9 +29,9 @@ thread_local std::string last_error;
 
 fontana_status report(fontana_status status, const char* sentence) noexcept {
     try {
-        last_error = sentence;
+        last_error = fontana::one_line(sentence);
     } catch (...) {
-        last_error.clear();
+        last_error = "out of memory";  // short enough to need none
     }
     return status;
 }
@@ -55,6 +56,11 @@ fontana_status guarded(const Work& work) noexcept {
 
 void require(const void* pointer, const char* name) {
     if (!pointer) fontana::fail(FONTANA_BAD_INPUT, std::string(name) + " must not be null");
+}
+
+void require_not_negative(double value, const char* name) {
+    if (!(value >= 0.0) || !std::isfinite(value))
+        fontana::fail(FONTANA_BAD_INPUT, std::string(name) + " must be a finite number, 0 or above");
 }
 
 fontana::Simulation& simulation_of(fontana_simulation* handle) {
@@ -196,6 +202,9 @@ fontana_status fontana_set_collider_keys(fontana_simulation* simulation, size_t 
             require(time, "time");
             require(centre, "centre");
         }
+        if (count > fontana::Collider::most_keys)
+            fontana::fail(FONTANA_BAD_INPUT,
+                          "a collider has at most " + std::to_string(fontana::Collider::most_keys) + " keys");
         std::vector<fontana::Vector> centres(count);
         for (size_t k = 0; k < count; ++k) std::copy_n(centre + 3 * k, 3, centres[k].begin());
         simulation_of(simulation).collider(index).set_keys(std::vector<double>(time, time + count), std::move(centres));
@@ -208,6 +217,8 @@ size_t fontana_collider_count(const fontana_simulation* simulation) {
 
 fontana_status fontana_collider_centre(fontana_simulation* simulation, size_t index, double time, double centre[3]) {
     return guarded([&] {
+        require(centre, "centre");
+        if (!std::isfinite(time)) fontana::fail(FONTANA_BAD_INPUT, "the time must be a finite number of seconds");
         const fontana::Vector c = simulation_of(simulation).collider(index).centre_at(time);
         std::copy(c.begin(), c.end(), centre);
     });
@@ -292,6 +303,8 @@ fontana_status fontana_estimate_limits(fontana_simulation* simulation, double sp
                                        fontana_time_step_limits* out) {
     return guarded([&] {
         require(out, "out");
+        require_not_negative(speed, "speed");
+        require_not_negative(acceleration, "acceleration");
         *out = fontana::time_step_limits(simulation_of(simulation).parameters, speed, acceleration);
     });
 }
@@ -393,7 +406,7 @@ fontana_status fontana_publish_file(const char* path, const void* data, size_t b
     });
 }
 
-uint64_t fontana_hash(const void* data, size_t bytes) { return data ? fontana::hash64(data, bytes) : 0; }
+uint64_t fontana_hash(const void* data, size_t bytes) { return fontana::hash64(data, data ? bytes : 0); }
 
 fontana_status fontana_smoothing_kernel(const char* kernel, const char* quantity, double r, double support_radius,
                                         double* out) {
@@ -401,8 +414,9 @@ fontana_status fontana_smoothing_kernel(const char* kernel, const char* quantity
         require(kernel, "kernel");
         require(quantity, "quantity");
         require(out, "out");
-        if (!(r >= 0.0) || !(support_radius > 0.0))
-            fontana::fail(FONTANA_BAD_INPUT, "expected r >= 0 and a support radius above 0");
+        require_not_negative(r, "r");
+        require_not_negative(support_radius, "the support radius");
+        if (support_radius == 0.0) fontana::fail(FONTANA_BAD_INPUT, "the support radius must be above 0");
         *out = smoothing(kernel, quantity, r, support_radius);
     });
 }
@@ -411,6 +425,7 @@ fontana_status fontana_count_neighbors(fontana_simulation* simulation, uint32_t*
     return guarded([&] {
         if (count != simulation_of(simulation).particle_count())
             fontana::fail(FONTANA_BAD_INPUT, "expected room for as many counts as there are particles");
+        if (count) require(out, "out");
         simulation_of(simulation).count_neighbors(out);
     });
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 
 #include "io/bgeo.h"
@@ -19,6 +20,13 @@ void require_finite(const float* values, std::size_t count, std::size_t componen
         if (!std::isfinite(values[k]))
             fail(FONTANA_BAD_INPUT,
                  std::string(what) + " of particle " + std::to_string(k / components) + " is not a finite number");
+}
+
+[[noreturn]] void fail_too_many(double count) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", count);
+    fail(FONTANA_BAD_INPUT, std::string(text) + " particles are more than the " + std::to_string(Particles::most) +
+                                " that ids and indices can count");
 }
 
 std::vector<float> scaled(const float* values, std::size_t count, double scale) {
@@ -52,6 +60,7 @@ Collider& Simulation::collider(std::size_t index) {
 }
 
 std::size_t Simulation::add_emitter(const fontana_emitter& settings) {
+    emitted_batches_.reserve(emitters_.size() + 1);  // so that nothing can fail between the next two lines
     emitters_.emplace_back(settings, static_cast<std::uint32_t>(emitters_.size()));
     emitted_batches_.push_back(0);
     return emitters_.size() - 1;
@@ -64,18 +73,30 @@ double Simulation::scene_spacing() const {
 std::uint64_t Simulation::emitted_by(std::int64_t frame) const {
     const double duration = frame_duration(parameters), spacing = scene_spacing();
     std::uint64_t total = 0;
-    for (const Emitter& emitter : emitters_)
-        total += emitter.due_count(static_cast<double>(frame) * duration, false, spacing, duration) *
-                 emitter.particles_per_batch(spacing);
+    for (const Emitter& emitter : emitters_) {
+        const std::uint64_t due = emitter.due_count(static_cast<double>(frame) * duration, false, spacing, duration);
+        if (due > 0) total += due * emitter.particles_per_batch(spacing);
+        if (total > Particles::most) fail_too_many(static_cast<double>(total));
+    }
     return total;
 }
 
 std::size_t Simulation::particle_count() const { return solver_ ? solver_->particles().count() : 0; }
 
+void Simulation::require_room(double more) {
+    const double total = static_cast<double>(particle_count()) + more;
+    if (total > static_cast<double>(Particles::most)) fail_too_many(total);
+    // Asked beforehand, because an operating system may grant memory that it does not have and end the process later.
+    const std::uint64_t needed = memory_for(static_cast<std::uint64_t>(total)), present = device().memory_bytes;
+    if (present > 0 && needed > present)
+        fail(FONTANA_OUT_OF_MEMORY, "out of memory: " + std::to_string(static_cast<std::uint64_t>(total)) +
+                                        " particles take " + std::to_string(needed >> 20) + " MiB, and '" +
+                                        device().name + "' has " + std::to_string(present >> 20) + " MiB");
+}
+
 void Simulation::add_particles(std::size_t count, const float* position, const float* velocity, const float* mass) {
     if (count == 0) return;
-    require_finite(position, count, 3, "the position");
-    if (velocity) require_finite(velocity, count, 3, "the velocity");
+    require_room(static_cast<double>(count));
     for (std::size_t k = 0; mass && k < count; ++k)
         if (!(mass[k] > 0.0f && std::isfinite(mass[k])))
             fail(FONTANA_BAD_INPUT, "the mass of particle " + std::to_string(k) + " is " + std::to_string(mass[k]) +
@@ -85,6 +106,8 @@ void Simulation::add_particles(std::size_t count, const float* position, const f
     const std::vector<float> own_mass(mass ? 0 : count, static_cast<float>(fontana::particle_mass(parameters)));
     const std::vector<float> x = scaled(position, 3 * count, scale);
     const std::vector<float> v = scaled(velocity ? velocity : at_rest.data(), 3 * count, scale);
+    require_finite(x.data(), count, 3, "the position in metres");
+    require_finite(v.data(), count, 3, "the velocity in metres a second");
     solver().particles().append(count, x.data(), v.data(), mass ? mass : own_mass.data(),
                                 static_cast<float>(parameters.fluid_rest_density));
 }
@@ -127,12 +150,17 @@ void Simulation::check() const {
 void Simulation::emit_due(double time, bool inclusive) {
     const double duration = frame_duration(parameters), spacing = scene_spacing();
     EmittedParticles fresh;
+    std::vector<std::uint64_t> batches = emitted_batches_;
     for (std::size_t k = 0; k < emitters_.size(); ++k) {
         const std::uint64_t due = emitters_[k].due_count(time, inclusive, spacing, duration);
-        for (; emitted_batches_[k] < due; ++emitted_batches_[k])
-            emitters_[k].emit(emitted_batches_[k], time, spacing, duration, fresh);
+        if (due <= batches[k]) continue;
+        require_room(static_cast<double>(fresh.position.size() / 3) +
+                     static_cast<double>(due - batches[k]) *
+                         static_cast<double>(emitters_[k].particles_per_batch(spacing)));
+        for (; batches[k] < due; ++batches[k]) emitters_[k].emit(batches[k], time, spacing, duration, fresh);
     }
     add_particles(fresh.position.size() / 3, fresh.position.data(), fresh.velocity.data(), nullptr);
+    emitted_batches_ = std::move(batches);  // only now: a batch that found no memory comes with the next call
 }
 
 void Simulation::begin_frame() {
@@ -179,18 +207,36 @@ void Simulation::account_for(const SubstepReport& report) {
     }
 }
 
+bool Simulation::is_stop_asked(double frame_fraction) {
+    if (!progress_) return false;
+    const Progress progress = progress_;  // which the callback may replace
+    is_in_progress_ = true;
+    const bool stop = progress(frame_fraction);
+    is_in_progress_ = false;
+    return stop;
+}
+
+void Simulation::require_no_progress() const {
+    if (is_in_progress_)
+        fail(FONTANA_BAD_INPUT, "the progress callback runs within a frame: step or load after it has returned");
+}
+
 fontana_frame_report Simulation::step_frame() {
     const auto begin = std::chrono::steady_clock::now();
+    require_no_progress();
     solver();
-    if (!run_.frame_begun) begin_frame();
     const double duration = frame_duration(parameters);
+    if (!run_.frame_begun)
+        begin_frame();
+    else  // an earlier call may have failed between a substep and its emitters
+        emit_due(static_cast<double>(run_.frames_done) * duration + run_.frame_time, false);
     const auto is_done = [&] {
         if (parameters.time_substeps > 0) return run_.substeps >= static_cast<std::uint32_t>(parameters.time_substeps);
         return run_.frame_time >= duration * (1.0 - 1e-9);
     };
     while (!is_done()) {
         take_substep();
-        if (progress_ && progress_(std::min(1.0, run_.frame_time / duration)) && !is_done())
+        if (is_stop_asked(std::min(1.0, run_.frame_time / duration)) && !is_done())
             fail(FONTANA_INTERRUPTED, "interrupted in frame " + std::to_string(run_.frames_done + 1));
     }
     solver().backend().finish();
@@ -267,13 +313,6 @@ void Simulation::read_attribute(const std::string& name, void* out, std::size_t 
     }
 }
 
-void Simulation::count_neighbors(std::uint32_t* out) {
-    // The search sorts the particles; what was computed in the old order has to come back with them.
-    const ParticleState state = solver().particles().download();
-    solver().count_neighbors(parameters, out);
-    solver().particles().upload(state);
-}
-
 void Simulation::write_bgeo(const std::string& path) {
     const std::size_t count = particle_count();
     const double radius = 0.5 * sampling_distance(parameters) / parameters.time_simulation_scale;  // pscale is a radius
@@ -291,6 +330,7 @@ void Simulation::write_bgeo(const std::string& path) {
 }
 
 std::uint64_t Simulation::memory_for(std::uint64_t particle_count) const {
+    if (particle_count > Particles::most) fail_too_many(static_cast<double>(particle_count));
     return particle_count * Particles::bytes_per_particle() + Neighborhood::bytes(particle_count) +
            method_bytes(parameters.fluid_method, particle_count);
 }

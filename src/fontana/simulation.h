@@ -56,7 +56,7 @@ class Simulation {
 
     // 4-byte values in order of id; `bytes` must be just what the attribute takes.
     void read_attribute(const std::string& name, void* out, std::size_t bytes);
-    void count_neighbors(std::uint32_t* out);
+    void count_neighbors(std::uint32_t* out) { solver().count_neighbors(parameters, out); }
     void write_bgeo(const std::string& path);
 
     void save_checkpoint(const std::string& path, const std::string& tag);
@@ -72,6 +72,10 @@ class Simulation {
     Solver& solver();
     void begin_frame();
     void emit_due(double time, bool inclusive);
+    // Throws unless ids, indices and the device's memory suffice for so many more particles.
+    void require_room(double more);
+    bool is_stop_asked(double frame_fraction);
+    void require_no_progress() const;
     void take_substep();
     void account_for(const SubstepReport& report);
     fontana_frame_report finish_frame(double seconds);
@@ -82,6 +86,7 @@ class Simulation {
     std::vector<std::uint64_t> emitted_batches_;  // by emitter
     RunState run_;
     Progress progress_;
+    bool is_in_progress_ = false;
     std::unique_ptr<Solver> solver_;
     std::string solver_key_;  // what solver_ was made for
 };

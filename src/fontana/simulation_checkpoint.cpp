@@ -48,6 +48,7 @@ void Simulation::save_checkpoint(const std::string& path, const std::string& tag
 }
 
 void Simulation::load_checkpoint(const std::string& path) {
+    require_no_progress();
     const Checkpoint checkpoint = Checkpoint::load(path);
     RunState run;
     std::uint64_t n = 0;
@@ -58,9 +59,8 @@ void Simulation::load_checkpoint(const std::string& path) {
     if (checkpoint.section("emitted_batches").size() != emitters_.size() * sizeof(std::uint64_t))
         fail(FONTANA_BAD_INPUT, "the checkpoint " + path + " is of a scene with another number of emitters than " +
                                     std::to_string(emitters_.size()));
-    if (run.grid.bits_x + run.grid.bits_y + run.grid.bits_z > 31 || run.grid.bits_x > 31 || run.grid.bits_y > 31)
-        fail(FONTANA_BAD_INPUT, "the checkpoint " + path + " has an impossible grid");
-    const auto batches = load_array<std::uint64_t>(checkpoint, "emitted_batches", emitters_.size());
+    if (!run.grid.is_possible()) fail(FONTANA_BAD_INPUT, "the checkpoint " + path + " has an impossible grid");
+    auto batches = load_array<std::uint64_t>(checkpoint, "emitted_batches", emitters_.size());
     const bool has_force = !checkpoint.section("force").empty();
     ParticleState state;
     state.position = load_array<float4>(checkpoint, "position", n);
@@ -75,7 +75,7 @@ void Simulation::load_checkpoint(const std::string& path) {
     run.dt_limit[sizeof run.dt_limit - 1] = '\0';
     solver().particles().upload(state);
     solver().neighborhood().set_shape(run.grid);
-    emitted_batches_ = batches;
+    emitted_batches_ = std::move(batches);
     run_ = run;
 }
 

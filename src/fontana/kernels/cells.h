@@ -15,10 +15,10 @@ typedef struct Range {
     uint begin, end;
 } Range;
 
-// The clamp keeps the conversion to int defined for any float; cells beyond it share the last one.
+// The clamp keeps the conversion to int defined for any float, NaN too; cells beyond it share the last one.
 FN uint cell_coordinate(float position, float inverse_cell_size, uint mask) {
     const float cell = FLOOR(position * inverse_cell_size);
-    return (uint)(int)max_f(-1.0e9f, min_f(1.0e9f, cell)) & mask;
+    return (uint)(int)max_f(min_f(cell, 1.0e9f), -1.0e9f) & mask;
 }
 
 FN CellCoordinates cell_of(const StepConstants c, float4 position) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "util/c_enum.h"
 #include "util/error.h"
 
 namespace fontana {
@@ -32,7 +33,8 @@ fontana_collider Collider::defaults(fontana_collider_type type) {
 }
 
 void Collider::set_surface(const fontana_collider& surface) {
-    require(surface.type >= FONTANA_PLANE_X && surface.type <= FONTANA_CYLINDER_OUTSIDE,
+    const int type = number_of(surface.type);
+    require(type >= FONTANA_PLANE_X && type <= FONTANA_CYLINDER_OUTSIDE,
             "unknown type; expected 0 (plane X) to 6 (cylinder outside)");
     require(is_finite(surface.centre) && is_finite(surface.velocity), "centre and velocity must be finite");
     require(surface.type <= FONTANA_PLANE_Z || (surface.radius > 0.0 && std::isfinite(surface.radius)),

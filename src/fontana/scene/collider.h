@@ -11,6 +11,9 @@ namespace fontana {
 
 class Collider {
  public:
+    // Far more than an animation has; a larger count is a mistake.
+    static constexpr std::size_t most_keys = std::size_t{1} << 24;
+
     explicit Collider(const fontana_collider& surface) { set_surface(surface); }
 
     // Throws BAD_INPUT on a radius, elasticity or friction out of range.

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "util/c_enum.h"
 #include "util/error.h"
 
 namespace fontana {
 namespace {
 
-// A batch of more than this is a slip of units, not a scene.
+// More than this is a slip of units, not a scene.
 constexpr double k_most_particles = 2.0e9;
+constexpr char k_too_many[] = "more than 2e9 particles; are the units and the particle spacing right?";
 
 void require(bool condition, const std::string& sentence) {
     if (!condition) fail(FONTANA_BAD_INPUT, "emitter: " + sentence);
@@ -24,7 +26,7 @@ Vector cross(const Vector& a, const Vector& b) {
 }
 
 Vector normalised(const Vector& a) {
-    const double length = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    const double length = std::hypot(a[0], a[1], a[2]);
     return {a[0] / length, a[1] / length, a[2] / length};
 }
 
@@ -37,33 +39,7 @@ double random_shift(std::uint64_t emitter, std::uint64_t particle, std::uint64_t
     return static_cast<double>(z >> 11) * 0x1p-52 - 1.0;
 }
 
-// Lattice points of the box [-half, half] around 0, cell-centred, x fastest.
-std::vector<Vector> lattice(const Vector& half, double spacing) {
-    std::array<long, 3> n;
-    double total = 1.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const double along = std::max(1.0, std::round(2.0 * half[k] / spacing));
-        total *= along;
-        require(total <= k_most_particles, "more than 2e9 particles; is the particle spacing right?");
-        n[k] = static_cast<long>(along);
-    }
-    std::vector<Vector> points;
-    points.reserve(static_cast<std::size_t>(total));
-    for (long z = 0; z < n[2]; ++z)
-        for (long y = 0; y < n[1]; ++y)
-            for (long x = 0; x < n[0]; ++x)
-                points.push_back({(static_cast<double>(x) - 0.5 * static_cast<double>(n[0] - 1)) * spacing,
-                                  (static_cast<double>(y) - 0.5 * static_cast<double>(n[1] - 1)) * spacing,
-                                  (static_cast<double>(z) - 0.5 * static_cast<double>(n[2] - 1)) * spacing});
-    return points;
-}
-
-void keep_within(double radius, std::vector<Vector>& points) {
-    points.erase(
-        std::remove_if(points.begin(), points.end(),
-                       [radius](const Vector& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] > radius * radius; }),
-        points.end());
-}
+bool is_within(double radius, const Vector& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] <= radius * radius; }
 
 }  // namespace
 
@@ -80,8 +56,8 @@ fontana_emitter Emitter::defaults(fontana_emitter_type type) {
 }
 
 Emitter::Emitter(const fontana_emitter& settings, std::uint32_t index) : settings_(settings), index_(index) {
-    require(settings.type >= FONTANA_BLOCK && settings.type <= FONTANA_DISC,
-            "unknown type; expected 0 (block), 1 (sphere) or 2 (disc)");
+    const int type = number_of(settings.type);
+    require(type >= FONTANA_BLOCK && type <= FONTANA_DISC, "unknown type; expected 0 (block), 1 (sphere) or 2 (disc)");
     require(is_finite(settings.centre) && is_finite(settings.velocity), "centre and velocity must be finite");
     require(settings.type != FONTANA_BLOCK || (is_finite(settings.size) && settings.size[0] > 0.0 &&
                                                settings.size[1] > 0.0 && settings.size[2] > 0.0),
@@ -102,22 +78,59 @@ Emitter::Emitter(const fontana_emitter& settings, std::uint32_t index) : setting
     up_ = cross(direction_, side_);
 }
 
+Emitter::Lattice Emitter::lattice(double spacing) const {
+    const double r = settings_.radius, flat = settings_.type == FONTANA_DISC ? 0.0 : 2.0 * r;
+    const bool is_block = settings_.type == FONTANA_BLOCK;
+    const double* size = settings_.size;
+    const Vector extent = is_block ? Vector{size[0], size[1], size[2]} : Vector{2.0 * r, flat, 2.0 * r};
+    Lattice lattice;
+    double total = 1.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const double along = std::max(1.0, std::round(extent[k] / spacing));
+        total *= along;
+        require(total <= k_most_particles, k_too_many);
+        lattice[k] = static_cast<long>(along);
+    }
+    return lattice;
+}
+
+// Calls visit(point) for each point of the batch before it is turned and moved into place, x fastest.
+template <typename Visit>
+void Emitter::for_each_point(double spacing, const Visit& visit) const {
+    const Lattice n = lattice(spacing);
+    const auto coordinate = [&](long i, long along) {
+        return (static_cast<double>(i) - 0.5 * static_cast<double>(along - 1)) * spacing;
+    };
+    bool is_empty = true;
+    for (long z = 0; z < n[2]; ++z)
+        for (long y = 0; y < n[1]; ++y)
+            for (long x = 0; x < n[0]; ++x) {
+                const Vector point = {coordinate(x, n[0]), coordinate(y, n[1]), coordinate(z, n[2])};
+                if (settings_.type != FONTANA_BLOCK && !is_within(settings_.radius, point)) continue;
+                visit(point);
+                is_empty = false;
+            }
+    if (is_empty) visit(Vector{0.0, 0.0, 0.0});  // smaller than the spacing: one particle
+}
+
 std::vector<Vector> Emitter::sample(double spacing) const {
-    const double r = settings_.radius;
-    if (settings_.type == FONTANA_BLOCK)
-        return lattice({0.5 * settings_.size[0], 0.5 * settings_.size[1], 0.5 * settings_.size[2]}, spacing);
-    std::vector<Vector> points = lattice({r, settings_.type == FONTANA_DISC ? 0.0 : r, r}, spacing);
-    keep_within(r, points);
-    if (points.empty()) points.push_back({0.0, 0.0, 0.0});  // smaller than the spacing: one particle
-    if (settings_.type == FONTANA_DISC)
-        for (Vector& p : points) {
-            const Vector flat = p;
-            for (std::size_t k = 0; k < 3; ++k) p[k] = flat[0] * side_[k] + flat[2] * up_[k];
-        }
+    std::vector<Vector> points;
+    for_each_point(spacing, [&](const Vector& point) {
+        Vector turned = point;
+        if (settings_.type == FONTANA_DISC)
+            for (std::size_t k = 0; k < 3; ++k) turned[k] = point[0] * side_[k] + point[2] * up_[k];
+        points.push_back(turned);
+    });
     return points;
 }
 
-std::uint64_t Emitter::particles_per_batch(double spacing) const { return sample(spacing).size(); }
+std::uint64_t Emitter::particles_per_batch(double spacing) const {
+    const Lattice n = lattice(spacing);
+    if (settings_.type == FONTANA_BLOCK) return static_cast<std::uint64_t>(n[0] * n[1] * n[2]);
+    std::uint64_t count = 0;
+    for_each_point(spacing, [&](const Vector&) { ++count; });
+    return count;
+}
 
 double Emitter::batch_interval(double spacing) const {
     if (settings_.rate > 0.0) return static_cast<double>(particles_per_batch(spacing)) / settings_.rate;
@@ -133,6 +146,7 @@ std::uint64_t Emitter::due_count(double time, bool inclusive, double spacing, do
     const double end = settings_.last_frame == INT32_MAX ? time : std::min(time, settings_.last_frame * frame_duration);
     const double interval = batch_interval(spacing);
     const double layers = std::floor((end - begin) / interval);
+    require(layers <= k_most_particles, k_too_many);
     const bool on_the_dot = begin + layers * interval >= end && !(inclusive && end == time);
     return static_cast<std::uint64_t>(layers) + (on_the_dot ? 0 : 1);
 }

@@ -1,6 +1,7 @@
 // Emitters: particles on a lattice at the spacing, once (block, sphere) or layer by layer (disc).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -30,6 +31,11 @@ class Emitter {
     static fontana_emitter defaults(fontana_emitter_type type);
 
  private:
+    using Lattice = std::array<long, 3>;  // points along x, y, z
+
+    Lattice lattice(double spacing) const;
+    template <typename Visit>
+    void for_each_point(double spacing, const Visit& visit) const;
     std::vector<Vector> sample(double spacing) const;
     double batch_interval(double spacing) const;
     double first_time(double frame_duration) const;

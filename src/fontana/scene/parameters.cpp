@@ -58,7 +58,7 @@ void check_number(const fontana_parameter& row, double value) {
         fail(FONTANA_BAD_INPUT, std::string(row.name) + ": " + text_of(value) + " is out of range; expected " +
                                     text_of(row.minimum) + " to " + text_of(row.maximum) + unit);
     }
-    if (row.type == FONTANA_INT && value != std::floor(value))
+    if ((row.type == FONTANA_INT || row.type == FONTANA_BOOL) && value != std::floor(value))
         fail(FONTANA_BAD_INPUT, std::string(row.name) + ": expected a whole number, not " + text_of(value));
 }
 

@@ -1,5 +1,6 @@
 #include "solver/constants.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/spline.h"
@@ -38,9 +39,13 @@ void for_lattice(double spacing, double support, const Visit& visit) {
             }
 }
 
+// From this many spacings on a sum over the lattice is the integral, to more digits than a float has.
+constexpr double k_most_reach = 32.0;
+
 // sum of W over the lattice, the point itself included: 1 / (volume of a particle).
 double lattice_sum(const Parameters& p) {
     const double support = support_radius(p);
+    if (support > k_most_reach * p.fluid_particle_spacing) return 1.0 / std::pow(p.fluid_particle_spacing, 3);
     double sum = 0.0;
     if (uses_spline(p)) {
         const StepConstants c = spline_constants(p);
@@ -58,6 +63,7 @@ double lattice_sum(const Parameters& p) {
 // there, its layers below. Found by bisection.
 double wall_offset(const Parameters& p, const StepConstants& c) {
     const double spacing = p.fluid_particle_spacing, support = support_radius(p);
+    if (support > k_most_reach * spacing) return 0.0;
     const int reach = static_cast<int>(std::ceil(support / spacing));
     double below = 0.0;
     for (int z = 1; z <= reach; ++z)
@@ -100,11 +106,12 @@ double density_error_tolerance(const Parameters& p) {
 
 double pcisph_delta(const Parameters& p) {
     const StepConstants c = spline_constants(p);
+    const double support = support_radius(p), spacing = std::max(p.fluid_particle_spacing, support / k_most_reach);
     const double volume = particle_mass(p) / p.fluid_rest_density;
     double squares = 0.0;  // on a lattice the gradients themselves add up to nothing
-    for_lattice(p.fluid_particle_spacing, support_radius(p), [&](double r) {
-        const double gradient = volume * r * static_cast<double>(kernel_gradient(c, static_cast<float>(r)));
-        squares += gradient * gradient;
+    for_lattice(spacing, support, [&](double r) {
+        const double gradient = r * static_cast<double>(kernel_gradient(c, static_cast<float>(r)));
+        squares += volume * std::pow(spacing, 3) * gradient * gradient;
     });
     return 0.5 / squares;
 }

@@ -11,16 +11,20 @@ namespace {
 // A block of fluid has one cell for eight particles. The box may have this many cells a particle, for air and spray.
 constexpr std::size_t k_cells_per_particle = 4;
 constexpr std::size_t k_least_cells = 4096;
-constexpr std::uint32_t k_least_bits = 2;  // 4 cells: the 3 neighbours of a cell along an axis must differ
-constexpr std::uint32_t k_most_bits = 20;
 
 std::uint32_t bits_for(double cells) {
-    std::uint32_t bits = k_least_bits;
-    while (bits < k_most_bits && static_cast<double>(std::uint64_t{1} << bits) < cells) ++bits;
+    std::uint32_t bits = GridShape::least_bits;
+    while (bits < GridShape::most_bits && static_cast<double>(std::uint64_t{1} << bits) < cells) ++bits;
     return bits;
 }
 
 }  // namespace
+
+bool GridShape::is_possible() const {
+    for (const std::uint32_t bits : {bits_x, bits_y, bits_z})
+        if (bits < least_bits || bits > most_bits) return false;
+    return bits_x + bits_y + bits_z < 32;
+}
 
 void Neighborhood::fit(Particles& particles, const StepConstants& constants) {
     if (particles.count() == 0) return;
@@ -33,7 +37,7 @@ void Neighborhood::fit(Particles& particles, const StepConstants& constants) {
     for (;;) {
         std::uint32_t& longest = *std::max_element(bits, bits + 3);
         const std::uint32_t sum = bits[0] + bits[1] + bits[2];
-        if (longest == k_least_bits || (std::uint64_t{1} << sum) <= most) break;
+        if (longest == GridShape::least_bits || (std::uint64_t{1} << sum) <= most) break;
         --longest;
     }
     shape_ = {bits[0], bits[1], bits[2]};
@@ -42,8 +46,8 @@ void Neighborhood::fit(Particles& particles, const StepConstants& constants) {
 void Neighborhood::reserve(std::size_t particle_count, std::size_t cell_count) {
     if (!key_ || key_->bytes() < particle_count * 4) {
         const std::size_t roomy = particle_count + particle_count / 2;
-        key_ = backend_.allocate("cell key", roomy * 4);
         order_ = backend_.allocate("order", roomy * 4);
+        key_ = backend_.allocate("cell key", roomy * 4);
     }
     if (!cell_start_ || cell_start_->bytes() < (cell_count + 1) * 4)
         cell_start_ = backend_.allocate("cell start", (cell_count + 1) * 4);

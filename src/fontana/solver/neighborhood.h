@@ -12,6 +12,9 @@ namespace fontana {
 // The box of cells that coordinates wrap around (kernels/cells.h): counts along the axes as powers of two.
 struct GridShape {
     std::uint32_t bits_x = 2, bits_y = 2, bits_z = 2;
+    // 4 cells at the least, so that the 3 neighbours of a cell along an axis differ.
+    static constexpr std::uint32_t least_bits = 2, most_bits = 20;
+    bool is_possible() const;  // for one that comes from a file
     std::size_t cell_count() const { return std::size_t{1} << (bits_x + bits_y + bits_z); }
 };
 

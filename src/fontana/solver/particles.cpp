@@ -1,15 +1,11 @@
 #include "solver/particles.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "util/error.h"
 
 namespace fontana {
 namespace {
-
-// Ids and indices are 32-bit, and three words a particle must be countable too.
-constexpr std::size_t k_most_particles = std::numeric_limits<std::uint32_t>::max() / 4;
 
 template <typename T>
 std::vector<T> read_all(Backend& backend, const Buffer& buffer, std::size_t count) {
@@ -31,29 +27,30 @@ std::uint64_t Particles::bytes_per_particle() {
            + 16;              // force
 }
 
-void Particles::grow(std::unique_ptr<Buffer>& buffer, const char* name, std::size_t bytes_per_particle, bool keep) {
-    std::unique_ptr<Buffer> larger = backend_.allocate(name, capacity_ * bytes_per_particle);
-    if (keep && buffer && count_) backend_.copy(*buffer, *larger, count_ * bytes_per_particle);
+void Particles::grow(std::unique_ptr<Buffer>& buffer, const char* name, std::size_t bytes, std::size_t kept_bytes) {
+    std::unique_ptr<Buffer> larger = backend_.allocate(name, bytes);
+    if (kept_bytes) backend_.copy(*buffer, *larger, kept_bytes);
     buffer = std::move(larger);
 }
 
 void Particles::reserve(std::size_t capacity) {
     if (capacity <= capacity_ && position_) return;
-    if (capacity > k_most_particles)
-        fail(FONTANA_BAD_INPUT, std::to_string(capacity) + " particles are more than the " +
-                                    std::to_string(k_most_particles) + " that ids and indices can count");
-    capacity_ = std::max({capacity, capacity_ + capacity_ / 2, std::size_t{64}});
-    grow(position_, "position", 16, true);
-    grow(velocity_, "velocity", 16, true);
-    grow(id_, "id", 4, true);
-    grow(density_, "density", 4, true);
-    grow(packed_position_, "packed position", 16, true);
-    grow(packed_velocity_, "packed velocity", 16, true);
-    grow(acceleration_, "acceleration", 16, true);
-    grow(force_by_id_, "force", has_force_ ? 16 : 0, true);
-    grow(other_position_, "sorted position", 16, false);
-    grow(other_velocity_, "sorted velocity", 16, false);
-    grow(other_id_, "sorted id", 4, false);
+    if (capacity > most)
+        fail(FONTANA_BAD_INPUT, std::to_string(capacity) + " particles are more than the " + std::to_string(most) +
+                                    " that ids and indices can count");
+    const std::size_t roomy = std::max({capacity, capacity_ + capacity_ / 2, std::size_t{64}});
+    grow(position_, "position", 16 * roomy, 16 * count_);
+    grow(velocity_, "velocity", 16 * roomy, 16 * count_);
+    grow(id_, "id", 4 * roomy, 4 * count_);
+    grow(density_, "density", 4 * roomy, 4 * count_);
+    grow(packed_position_, "packed position", 16 * roomy, 16 * count_);
+    grow(packed_velocity_, "packed velocity", 16 * roomy, 16 * count_);
+    grow(acceleration_, "acceleration", 16 * roomy, 16 * count_);
+    grow(force_by_id_, "force", has_force_ ? 16 * roomy : 0, has_force_ ? 16 * count_ : 0);
+    grow(other_position_, "sorted position", 16 * roomy, 0);
+    grow(other_velocity_, "sorted velocity", 16 * roomy, 0);
+    grow(other_id_, "sorted id", 4 * roomy, 0);
+    capacity_ = roomy;  // only now: memory may run out halfway
 }
 
 void Particles::append(std::size_t count, const float* position, const float* velocity, const float* mass,
@@ -77,8 +74,8 @@ void Particles::append(std::size_t count, const float* position, const float* ve
 }
 
 void Particles::set_force(const std::vector<float4>& force_by_id) {
+    force_by_id_ = backend_.allocate("force", force_by_id.empty() ? 0 : capacity_ * 16);
     has_force_ = !force_by_id.empty();
-    force_by_id_ = backend_.allocate("force", has_force_ ? capacity_ * 16 : 0);
     write_all(backend_, *force_by_id_, force_by_id);
 }
 
@@ -96,9 +93,8 @@ ParticleState Particles::download() {
 }
 
 void Particles::upload(const ParticleState& state) {
-    count_ = 0;
-    has_force_ = !state.force_by_id.empty();
     reserve(state.position.size());
+    set_force(state.force_by_id);  // what needs memory comes first: if there is none, the old particles stay
     count_ = state.position.size();
     write_all(backend_, *position_, state.position);
     write_all(backend_, *velocity_, state.velocity);
@@ -106,7 +102,6 @@ void Particles::upload(const ParticleState& state) {
     write_all(backend_, *density_, state.density);
     write_all(backend_, *packed_velocity_, state.packed_velocity);
     write_all(backend_, *acceleration_, state.acceleration);
-    set_force(state.force_by_id);
 }
 
 void Particles::reorder(const Buffer& order) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +25,9 @@ struct ParticleState {
 
 class Particles {
  public:
+    // Ids and indices are 32-bit, and three words a particle must be countable too.
+    static constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max() / 4;
+
     explicit Particles(Backend& backend) : backend_(backend) {}
 
     std::size_t count() const { return count_; }
@@ -54,7 +58,7 @@ class Particles {
 
  private:
     void reserve(std::size_t capacity);
-    void grow(std::unique_ptr<Buffer>& buffer, const char* name, std::size_t bytes_per_particle, bool keep);
+    void grow(std::unique_ptr<Buffer>& buffer, const char* name, std::size_t bytes, std::size_t kept_bytes);
 
     Backend& backend_;
     std::size_t count_ = 0, capacity_ = 0;

@@ -32,14 +32,18 @@ Method& Solver::method(const std::string& name) {
 void Solver::count_neighbors(const Parameters& parameters, std::uint32_t* out) {
     const std::size_t count = particles_.count();
     if (count == 0) return;
+    // On copies, because the search sorts: what was computed in the present order, and the grid of a frame under way,
+    // stay as they are.
+    Particles copy(*backend_);
+    copy.upload(particles_.download());
+    Neighborhood search(*backend_);
     StepConstants constants = make_constants(parameters);
-    neighborhood_.fit(particles_, constants);
-    neighborhood_.update(particles_, constants);
+    search.fit(copy, constants);
+    search.update(copy, constants);
     const auto found = backend_->allocate("neighbour count", count * 4);
     const auto by_id = backend_->allocate("neighbour count by id", count * 4);
-    backend_->launch(Kernel::count_neighbors, count,
-                     {constants, particles_.position(), neighborhood_.cell_start(), *found});
-    backend_->launch(Kernel::words_by_id, count, {static_cast<std::uint32_t>(count), particles_.id(), *found, *by_id});
+    backend_->launch(Kernel::count_neighbors, count, {constants, copy.position(), search.cell_start(), *found});
+    backend_->launch(Kernel::words_by_id, count, {static_cast<std::uint32_t>(count), copy.id(), *found, *by_id});
     backend_->read(*by_id, out, count * 4);
 }
 

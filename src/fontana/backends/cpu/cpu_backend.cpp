@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 #include <new>
+#include <system_error>
 #include <thread>
 
 #include <unistd.h>
@@ -194,7 +195,13 @@ class CpuBackend : public Backend {
 std::vector<DeviceInfo> list_cpu_devices() { return {describe(false)}; }
 
 std::unique_ptr<Backend> make_cpu_backend(const BackendOptions& options) {
-    return std::make_unique<CpuBackend>(options);
+    try {
+        return std::make_unique<CpuBackend>(options);
+    } catch (const std::system_error& error) {
+        fail(FONTANA_OUT_OF_MEMORY, std::string("out of memory or threads: the system does not start as many as "
+                                                "solver.threads asks for (") +
+                                        error.what() + ")");
+    }
 }
 
 }  // namespace fontana

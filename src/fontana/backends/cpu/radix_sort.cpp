@@ -14,7 +14,7 @@ constexpr std::size_t k_grain = 65536;
 
 void RadixSort::sort(ThreadPool& pool, const std::uint32_t* key, std::size_t count, std::size_t key_count,
                      std::uint32_t* order, std::uint32_t* start) {
-    if (items_.size() < count) {
+    if (scratch_.size() < count) {
         items_.resize(count);
         scratch_.resize(count);
     }

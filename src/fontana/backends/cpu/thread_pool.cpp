@@ -5,10 +5,17 @@
 namespace fontana {
 
 ThreadPool::ThreadPool(int thread_count) {
-    for (int k = 1; k < thread_count; ++k) workers_.emplace_back([this] { work(); });
+    try {
+        for (int k = 1; k < thread_count; ++k) workers_.emplace_back([this] { work(); });
+    } catch (...) {
+        stop();  // a running thread must not be destroyed
+        throw;
+    }
 }
 
-ThreadPool::~ThreadPool() {
+ThreadPool::~ThreadPool() { stop(); }
+
+void ThreadPool::stop() {
     {
         std::lock_guard<std::mutex> lock(mutex_);
         stopping_ = true;

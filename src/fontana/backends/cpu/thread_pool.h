@@ -18,7 +18,7 @@ namespace fontana {
 
 class ThreadPool {
  public:
-    // thread_count includes the caller of run().
+    // thread_count includes the caller of run(). Throws std::system_error where the system has no more threads to give.
     explicit ThreadPool(int thread_count);
     ~ThreadPool();
     ThreadPool(const ThreadPool&) = delete;
@@ -32,6 +32,7 @@ class ThreadPool {
 
  private:
     void work();
+    void stop();
     void take_pieces();
 
     std::vector<std::thread> workers_;

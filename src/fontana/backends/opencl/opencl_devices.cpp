@@ -149,7 +149,8 @@ std::vector<OpenClDevice> devices_of(cl_platform_id platform) {
     if (ids.empty() && (code == CL_SUCCESS || code == CL_DEVICE_NOT_FOUND))
         return {unusable(name, why_empty(platform))};
     if (code != CL_SUCCESS)
-        return {unusable(name, "the devices of '" + name + "' cannot be listed: clGetDeviceIDs failed with " + opencl_error_name(code))};
+        return {unusable(name, "the devices of '" + name + "' cannot be listed: clGetDeviceIDs failed with " +
+                                   opencl_error_name(code))};
     std::vector<OpenClDevice> devices;
     for (cl_device_id id : ids) devices.push_back(describe(platform, id));
     return devices;

@@ -1,6 +1,8 @@
 #include "backends/opencl/opencl_program.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -16,7 +18,7 @@ extern const std::size_t opencl_kernel_source_count;
 
 namespace {
 
-constexpr std::size_t k_shown_log_lines = 8;
+constexpr int k_shown_log_lines = 4;
 
 // NaNs must survive, so nothing here may assume finite numbers.
 std::string build_options(const OpenClDevice& device, bool strict) {
@@ -36,11 +38,13 @@ std::string cache_key(const OpenClDevice& device, const std::string& options) {
     return KernelCache::key_of(text);
 }
 
-std::string first_lines(const std::string& text) {
-    std::size_t end = 0;
-    for (std::size_t line = 0; line < k_shown_log_lines && end < text.size(); ++line)
-        end = std::min(text.find('\n', end), text.size() - 1) + 1;
-    return text.substr(0, end);
+// Errors are one line; the compiler's first complaints are the ones that matter.
+std::string first_lines(const std::string& log) {
+    std::istringstream lines(log);
+    std::string shown, line;
+    for (int count = 0; count < k_shown_log_lines && std::getline(lines, line); ++count)
+        shown += (shown.empty() ? "" : " | ") + line;
+    return shown;
 }
 
 std::string build_log(cl_program program, cl_device_id device) {
@@ -60,7 +64,7 @@ std::string build_log(cl_program program, cl_device_id device) {
     const std::string path = cache.save_log(key, log);
     fail(FONTANA_DEVICE_UNAVAILABLE,
          "the kernels do not compile for the OpenCL device '" + device.info.name + "' (" + device.info.driver +
-             (path.empty() ? "); its compiler says:\n" : "); the whole log is in " + path + " and begins:\n") +
+             (path.empty() ? "); its compiler says: " : "); the whole log is in " + path + " and begins: ") +
              first_lines(log));
 }
 

@@ -1,0 +1,188 @@
+"""The documents say what is so: links lead somewhere, files, commands and tests exist, scenes load."""
+
+import importlib.util
+import json
+import re
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+import fontana
+from fontana.cli import exit_codes
+from fontana.tables import COLLIDERS, EMITTERS, KEY_FIELDS, VIEW_FIELDS
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "src" / "fontana"
+PAGES = [*sorted((ROOT / "docs").glob("*.md")), *(ROOT / name for name in ("README.md", "CONTRIBUTING.md"))]
+# Where a path in a text may begin, and what exists only once something was built or run.
+PATH_ROOTS = (ROOT, SOURCE, ROOT / "python" / "fontana")
+MADE = ("out/", "build/", "benchmarks/results/", ".venv/")
+
+PATH = re.compile(r"(?<![\w./:~$*-])(?:[\w.-]+/)+[\w-][\w.-]*\.[A-Za-z]\w*(?![\w/*])")
+FOLDER = re.compile(r"`((?:[\w.-]+/)+)`")
+LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+URL = re.compile(r"\w+://\S+")
+CODE_SPAN = re.compile(r"`([^`\n]+)`")
+CODE_BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+
+
+def page(name: str) -> str:
+    return (ROOT / "docs" / name).read_text(encoding="utf-8")
+
+
+def anchor(heading: str) -> str:
+    """The name GitHub gives a heading."""
+    return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+
+
+def each_page(test):
+    return pytest.mark.parametrize("path", PAGES, ids=lambda path: path.name)(test)
+
+
+@each_page
+def test_links_lead_somewhere(path):
+    for target in LINK.findall(path.read_text(encoding="utf-8")):
+        if URL.match(target) or target.startswith("mailto:"):
+            continue
+        name, _, fragment = target.partition("#")
+        file = path.parent / name if name else path
+        assert file.exists(), f"{path.name}: the link {target} leads nowhere"
+        if fragment:
+            headings = re.findall(r"^#+ (.*)$", file.read_text(encoding="utf-8"), re.MULTILINE)
+            assert fragment in map(anchor, headings), f"{path.name}: no heading for {target}"
+
+
+@each_page
+def test_files_that_are_named_exist(path):
+    text = URL.sub("", path.read_text(encoding="utf-8"))
+    named = set(PATH.findall(text)) | set(FOLDER.findall(text))
+    missing = [
+        name
+        for name in sorted(named)
+        if not name.startswith(MADE)
+        and not any((root / name).exists() for root in (*PATH_ROOTS, path.parent))
+    ]
+    assert not missing, f"{path.name} names files that do not exist"
+
+
+@cache
+def subcommands(*command: str) -> set[str]:
+    """The names listed under "Commands:" in the help of a group of commands."""
+    call = [sys.executable, "-m", "fontana", *command, "--help"]
+    text = subprocess.run(call, capture_output=True, text=True, check=True).stdout
+    listed = re.findall(r"^  ([a-z][a-z-]*)(?:  |$)", text.partition("\nCommands:\n")[2], re.MULTILINE)
+    assert listed, f"no commands in the help of fontana {' '.join(command)}"
+    return set(listed)
+
+
+def commands_in(text: str):
+    """The words of every call of the command line in code."""
+    blocks = [line for _, block in CODE_BLOCK.findall(text) for line in block.splitlines()]
+    for code in [*blocks, *CODE_SPAN.findall(CODE_BLOCK.sub("", text))]:
+        words = code.strip().removeprefix("$ ").split()
+        if words[:1] == ["fontana"] and len(words) > 1 and re.fullmatch(r"[a-z-]+", words[1]):
+            yield words
+
+
+@each_page
+def test_commands_that_are_named_exist(path):
+    for words in commands_in(path.read_text(encoding="utf-8")):
+        if words[1].startswith("-"):
+            continue
+        assert words[1] in subcommands(), f"{path.name}: no command {' '.join(words)}"
+        if words[1] == "bench" and len(words) > 2 and not words[2].startswith("-"):
+            assert words[2] in subcommands("bench"), f"{path.name}: no command {' '.join(words)}"
+
+
+@each_page
+def test_tests_that_are_named_exist(path):
+    sources = "".join(file.read_text(encoding="utf-8") for file in (ROOT / "tests").rglob("test_*.py"))
+    for name in set(re.findall(r"`(test_\w+)`", path.read_text(encoding="utf-8"))):
+        assert f"def {name}(" in sources, f"{path.name}: there is no {name}"
+
+
+def test_parameters_page_is_up_to_date():
+    place = ROOT / "tools" / "make_parameter_docs.py"
+    specification = importlib.util.spec_from_file_location("make_parameter_docs", place)
+    tool = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(tool)
+    assert page("parameters.md") == tool.page(), "run: python tools/make_parameter_docs.py"
+
+
+def test_parameters_that_are_named_exist():
+    known = {parameter.name for parameter in fontana.parameters()}
+    groups = "|".join(sorted({name.split(".")[0] for name in known}))
+    for path in PAGES:
+        named = set(re.findall(rf"`((?:{groups})\.[a-z_]+)[`=]", path.read_text(encoding="utf-8")))
+        assert named <= known, f"{path.name}: {sorted(named - known)}"
+
+
+def scenes_on_the_page() -> list[str]:
+    blocks = [block for language, block in CODE_BLOCK.findall(page("scenes.md")) if language == "json"]
+    assert len(blocks) > 3
+    return blocks
+
+
+@pytest.mark.parametrize("index", range(len(scenes_on_the_page())))
+def test_scenes_on_the_page_load(index):
+    scene = fontana.load_scene(json.loads(scenes_on_the_page()[index]))
+    simulation = scene.build()
+    simulation.check()
+    if scene.emitters:
+        assert simulation.emitted_by(scene.frame_count) > 0
+
+
+def test_the_page_on_scenes_has_every_type_field_and_exit_code():
+    text = page("scenes.md")
+    for kind, fields in (EMITTERS | COLLIDERS).items():
+        assert f"`{kind}`" in text
+        assert [field.name for field in fields if f"`{field.name}`" not in text] == []
+    assert [field.name for field in (*KEY_FIELDS, *VIEW_FIELDS) if f"`{field.name}`" not in text] == []
+    for code in re.findall(r"^  (\d+)  ", exit_codes.HELP, re.MULTILINE):
+        assert re.search(rf"^\| {code} \|", text, re.MULTILINE), f"exit code {code} is missing"
+
+
+def test_the_map_of_the_thesis_is_complete():
+    text = page("thesis-map.md")
+    for equation in (*(f"2.{k}" for k in range(1, 18)), "3.1"):
+        assert f"({equation})" in text
+    for figure in range(1, 21):
+        assert re.search(rf"^\|.*\bFig\. {figure}\b.*\|", text, re.MULTILINE), f"Fig. {figure}"
+    for table in range(1, 6):
+        assert re.search(rf"^\| Table {table}\b", text, re.MULTILINE), f"Table {table}"
+
+
+def test_every_test_of_the_physics_is_in_the_validation():
+    text = page("validation.md")
+    files = [file for part in ("unit", "physics", "backends") for file in (ROOT / "tests" / part).glob("test_*.py")]
+    missing = [name for name in (str(file.relative_to(ROOT)) for file in files) if name not in text]
+    assert not missing, "docs/validation.md says what is tested: add a row"
+
+
+def test_every_kernel_of_the_list_is_in_the_text_and_back():
+    listed = re.findall(r"^KERNEL_ENTRY\((\w+),", (SOURCE / "kernels" / "kernel_list.def").read_text(), re.MULTILINE)
+    texts = "".join(file.read_text() for file in (SOURCE / "kernels").glob("*.h"))
+    assert sorted(listed) == sorted(re.findall(r"^KERNEL void (\w+)\(", texts, re.MULTILINE))
+
+
+def inclusion_rules() -> dict[str, list[str]]:
+    """The table of docs/architecture.md: what a folder may include beside itself."""
+    rows = re.findall(r"^\| `(\w+)` \|(.*)\|$", page("architecture.md"), re.MULTILINE)
+    return {folder: re.findall(r"`([\w./]+)`", rest) for folder, rest in rows}
+
+
+def test_the_arrows_point_right():
+    rules = inclusion_rules()
+    folders = {path.name for path in SOURCE.iterdir() if path.is_dir()}
+    assert set(rules) == folders
+    for folder, allowed in rules.items():
+        files = [file for file in (SOURCE / folder).rglob("*") if file.suffix in (".h", ".cpp")]
+        assert files
+        for file in files:
+            for included in re.findall(r'^#include "([^"]+)"', file.read_text(), re.MULTILINE):
+                beside = (file.parent / included).exists() or included.startswith(f"{folder}/")
+                fits = any(included == name or included.startswith(f"{name}/") for name in allowed)
+                assert beside or fits, f"{file.relative_to(SOURCE)} includes {included}"

@@ -1,0 +1,144 @@
+"""The command line: help, listings, and one sentence with the right exit code for each kind of trouble."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from command_line import error_line
+
+import fontana as package
+
+COMMANDS = ["run", "resume", "devices", "verify", "bench", "scenes", "schema", "explain", "fluids"]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_has_examples(fontana, command: str) -> None:
+    text = fontana(command, "--help").stdout
+    assert "Examples:" in text
+    assert f"fontana {command}" in text
+
+
+def test_the_main_help_tells_commands_and_exit_codes(fontana) -> None:
+    text = fontana("--help").stdout
+    for command in COMMANDS:
+        assert f"\n  {command} " in text
+    for code in (0, 2, 3, 4, 5, 6, 70, 130, 143):
+        assert f"\n    {code} " in text
+    assert package.version() in fontana("--version").stdout
+
+
+def test_devices_lists_the_cpu_and_what_auto_takes(fontana) -> None:
+    assert "--backend auto takes" in fontana("devices").stdout
+    devices = json.loads(fontana("devices", "--json").stdout)
+    assert any(device["backend"] == "cpu" and device["available"] for device in devices)
+    assert all(device["available"] or device["reason"] for device in devices)
+
+
+def test_an_absent_opencl_is_explained_and_refused(fontana, drop_file: Path) -> None:
+    absent = {"FONTANA_OPENCL_LIBRARY": "/nowhere/libOpenCL.so"}
+    assert "not available: opencl" in fontana("devices", env=absent).stdout
+    done = fontana("run", drop_file, "--backend", "opencl", env=absent, code=5)
+    assert "/nowhere/libOpenCL.so" in error_line(done)
+
+
+def test_explain_knows_parameters_and_offers_the_nearest(fontana) -> None:
+    text = fontana("explain", "viscosity").stdout
+    assert "fluid.viscosity: Viscosity" in text
+    assert "Pa.s" in text
+    everything = fontana("explain").stdout
+    assert all(parameter.name in everything for parameter in package.parameters())
+    assert "cutoff" in fontana("explain", "cylinder_inside").stdout
+    assert "did you mean fluid.viscosity?" in error_line(fontana("explain", "fluid.viscocity", code=2))
+
+
+def test_fluids_show_ranges_and_sources(fontana) -> None:
+    assert "honey" in fontana("fluids").stdout
+    text = fontana("fluids", "honey").stdout
+    assert "2 to 40 Pa.s" in text
+    assert "source" in text
+    assert "did you mean honey?" in error_line(fontana("fluids", "honney", code=2))
+    assert json.loads(fontana("fluids", "--json").stdout)[0]["key"] == "water"
+
+
+def test_scenes_and_schema(fontana) -> None:
+    names = {entry["name"] for entry in json.loads(fontana("scenes", "--json").stdout)}
+    assert names >= {"box", "fountain", "fountain_rock", "thesis_box", "thesis_fountain"}
+    assert "box" in fontana("scenes").stdout
+    assert json.loads(fontana("schema").stdout) == package.scene_schema()
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"fluid": {"viscocity": 1}}, "did you mean fluid.viscosity?"),
+        ({"fluid": {"particle_mass": -1}}, "fluid.particle_mass: -1 is below the least allowed, 0"),
+        ({"time": {"substeps": -1}}, "time.substeps: -1 is below the least allowed, 0"),
+        ({"emitters": []}, "the scene has no emitters"),
+        ({"emitters": [{"type": "sphere", "radius": 1, "first_frame": 99}]}, "no emitter makes a particle by frame 6"),
+        ({"fluid": {"viscosity": 1e5}}, "substeps a frame"),
+        ({"fluid": {"viscosity": 1e3}, "time": {"substeps": 2}}, "viscosity of 1e+03"),
+    ],
+)
+def test_a_bad_scene_is_exit_code_2_and_one_sentence(fontana, drop: dict, tmp_path: Path, change, sentence) -> None:
+    (tmp_path / "bad.json").write_text(json.dumps(drop | change))
+    done = fontana("run", "bad.json", code=2)
+    assert sentence in error_line(done)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["run", "fountian"], "did you mean fountain"),
+        (["run", "box", "--set", "fluid.viscosity=fast"], 'fluid.viscosity: "fast": expected a number'),
+        (["run", "box", "--set", "nonsense"], "expected path=value"),
+        (["resume", "."], "it is not the folder of a run"),
+    ],
+)
+def test_bad_arguments_are_exit_code_2(fontana, arguments: list[str], sentence: str) -> None:
+    assert sentence in error_line(fontana(*arguments, code=2))
+
+
+def test_options_that_do_not_exist_are_exit_code_2(fontana) -> None:
+    assert "No such option" in fontana("run", "box", "--bakend", "cpu", code=2).stderr
+    assert "Missing argument" in fontana("run", code=2).stderr
+
+
+def test_json_has_the_error_too(fontana) -> None:
+    done = fontana("run", "fountian", "--json", code=2)
+    event = json.loads(done.stdout)
+    assert event["event"] == "error"
+    assert event["code"] == 2
+    assert "did you mean fountain" in event["message"]
+
+
+def test_dry_run_says_the_costs_and_writes_nothing(fontana, drop_file: Path, tmp_path: Path) -> None:
+    text = fontana("run", drop_file, "--dry-run").stdout
+    for word in ("216 particles", "memory", "disk", "substeps", "acoustic", "M particle-substeps/s", "run it:"):
+        assert word in text
+    result = json.loads(fontana("run", drop_file, "--dry-run", "--json").stdout)
+    assert result["particles"] == 216
+    assert result["seconds"] > 0
+    assert result["disk_bytes"] >= 6 * 216 * 48
+    assert not (tmp_path / "out").exists()
+
+
+def test_verify_compares_every_backend(fontana) -> None:
+    result = json.loads(fontana("verify", "--json").stdout)
+    schemes = {(row["backend"], row["neighbors"], row["precision"]) for row in result["rows"]}
+    assert {("cpu", n, p) for n in ("grid", "all-pairs") for p in ("strict", "fast")} <= schemes
+    assert all(row["passed"] for row in result["rows"])
+    assert "allowed:" in fontana("verify").stdout
+
+
+def test_a_bug_is_reported_without_a_traceback(fontana, tmp_path: Path) -> None:
+    """sitecustomize breaks one function in the child, as a defect of ours would."""
+    (tmp_path / "sitecustomize.py").write_text(
+        "import fontana.scene\ndef broken():\n    raise KeyError('on purpose')\nfontana.scene.bundled_scenes = broken\n"
+    )
+    done = fontana("scenes", env={"PYTHONPATH": str(tmp_path)}, code=70)
+    assert "internal error" in error_line(done)
+    shown = fontana("scenes", env={"PYTHONPATH": str(tmp_path), "FONTANA_DEBUG": "1"}, code=70)
+    assert "Traceback" in shown.stderr
