@@ -499,12 +499,15 @@ void bind_tables(nb::module_& m) {
         .def_ro("acceleration", &fontana_time_step_limits::acceleration)
         .def_ro("acoustic", &fontana_time_step_limits::acoustic)
         .def_ro("viscosity", &fontana_time_step_limits::viscosity)
-        .def_ro("surface_tension", &fontana_time_step_limits::surface_tension);
+        .def_ro("surface_tension", &fontana_time_step_limits::surface_tension)
+        .def_ro("convergence", &fontana_time_step_limits::convergence);
     nb::class_<FrameReport>(m, "FrameReport")
         .def_prop_ro("frame", [](const FrameReport& r) { return r.frame; })
         .def_prop_ro("time", [](const FrameReport& r) { return r.time; })
         .def_prop_ro("particle_count", [](const FrameReport& r) { return r.particle_count; })
         .def_prop_ro("substeps", [](const FrameReport& r) { return r.substeps; })
+        .def_prop_ro("iterations", [](const FrameReport& r) { return r.iterations; })
+        .def_prop_ro("unconverged", [](const FrameReport& r) { return r.unconverged; })
         .def_prop_ro("dt_min", [](const FrameReport& r) { return r.dt_min; })
         .def_prop_ro("dt_max", [](const FrameReport& r) { return r.dt_max; })
         .def_ro("dt_limit", &FrameReport::limit)

@@ -203,8 +203,8 @@ fontana_status fontana_set_collider_keys(fontana_simulation* simulation, size_t 
             require(centre, "centre");
         }
         if (count > fontana::Collider::most_keys)
-            fontana::fail(FONTANA_BAD_INPUT, "a collider has at most " +
-                                                 std::to_string(fontana::Collider::most_keys) + " keys");
+            fontana::fail(FONTANA_BAD_INPUT,
+                          "a collider has at most " + std::to_string(fontana::Collider::most_keys) + " keys");
         std::vector<fontana::Vector> centres(count);
         for (size_t k = 0; k < count; ++k) std::copy_n(centre + 3 * k, 3, centres[k].begin());
         simulation_of(simulation).collider(index).set_keys(std::vector<double>(time, time + count), std::move(centres));

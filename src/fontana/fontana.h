@@ -183,14 +183,17 @@ typedef struct fontana_frame_report {
     int64_t frame; /* frames finished so far: 1 after the first */
     double time;   /* s */
     uint64_t particle_count;
-    uint32_t substeps;     /* in this frame */
-    double dt_min, dt_max; /* s */
-    const char* dt_limit;  /* what held the smallest dt: "fixed", "frame", "advection", "acoustic", ... */
-    double density_error_mean, density_error_max; /* of max(0, density/rest - 1) */
-    double max_speed;                             /* m/s */
-    double kinetic_energy;                        /* J */
-    double centre_of_mass[3];                     /* m */
-    double seconds;                               /* wall time of this frame */
+    uint32_t substeps;         /* in this frame */
+    uint32_t iterations;       /* of the pressure solves of all its substeps; 0 where the method has none */
+    uint32_t unconverged;      /* substeps whose solve gave up at solver.max_iterations */
+    double dt_min, dt_max;     /* s */
+    const char* dt_limit;      /* what held the smallest dt: "fixed", "frame", "advection", "acoustic", ... */
+    double density_error_mean; /* of max(0, density / rest - 1): mean over particles and substeps */
+    double density_error_max;  /* the largest of any particle in any substep */
+    double max_speed;          /* m/s */
+    double kinetic_energy;     /* J */
+    double centre_of_mass[3];  /* m */
+    double seconds;            /* wall time of this frame */
 } fontana_frame_report;
 
 /* Called after each substep with the finished share of the frame; non-zero stops with FONTANA_INTERRUPTED. */
@@ -202,7 +205,7 @@ FONTANA_API int64_t fontana_frame(const fontana_simulation*);
 
 /* The largest stable dt by limit for the present state and parameters, s; INFINITY where it does not apply. */
 typedef struct fontana_time_step_limits {
-    double advection, acceleration, acoustic, viscosity, surface_tension;
+    double advection, acceleration, acoustic, viscosity, surface_tension, convergence;
 } fontana_time_step_limits;
 FONTANA_API fontana_status fontana_estimate_limits(fontana_simulation*, double speed, double acceleration,
                                                    fontana_time_step_limits* out);

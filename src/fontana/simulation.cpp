@@ -165,10 +165,10 @@ void Simulation::emit_due(double time, bool inclusive) {
 
 void Simulation::begin_frame() {
     check();
-    run_.frame_time = 0.0;
-    run_.substeps = 0;
+    RunState fresh;
+    fresh.frames_done = run_.frames_done;
+    run_ = fresh;
     run_.dt_min = frame_duration(parameters);
-    run_.dt_max = 0.0;
     std::strncpy(run_.dt_limit, "frame", sizeof run_.dt_limit - 1);
     emit_due(static_cast<double>(run_.frames_done) * frame_duration(parameters), true);
     solver().begin_frame(parameters);
@@ -183,18 +183,28 @@ void Simulation::take_substep() {
                                    std::to_string(parameters.time_max_substeps) +
                                    " substeps (time.max_substeps): the limit '" + run_.dt_limit + "' asks for " +
                                    std::to_string(run_.dt_min) + " s");
-    TimeStep step{duration - run_.frame_time, "frame"};
+    SubstepReport report;
+    report.step.dt = duration - run_.frame_time;
     if (particle_count() > 0)
-        step = solver().substep(parameters, colliders_, frame_start + run_.frame_time, duration - run_.frame_time);
+        report = solver().substep(parameters, colliders_, frame_start + run_.frame_time, duration - run_.frame_time);
+    account_for(report);
+    emit_due(std::min(frame_start + run_.frame_time, frame_start + duration), false);
+}
+
+void Simulation::account_for(const SubstepReport& report) {
+    const TimeStep& step = report.step;
     run_.frame_time += step.dt;
     ++run_.substeps;
+    run_.iterations += report.iterations;
+    run_.unconverged += report.converged ? 0 : 1;
+    run_.density_error_sum += report.density_error_mean;
+    run_.density_error_max = std::max(run_.density_error_max, report.density_error_max);
     run_.dt_max = std::max(run_.dt_max, step.dt);
     // Equal steps keep the name of the first: the last of a frame always ends with it.
     if (run_.substeps == 1 || step.dt < run_.dt_min * (1.0 - 1e-9)) {
         run_.dt_min = step.dt;
         std::strncpy(run_.dt_limit, step.limit, sizeof run_.dt_limit - 1);
     }
-    emit_due(std::min(frame_start + run_.frame_time, frame_start + duration), false);
 }
 
 bool Simulation::is_stop_asked(double frame_fraction) {
@@ -247,11 +257,13 @@ fontana_frame_report Simulation::finish_frame(double seconds) {
     report.time = static_cast<double>(run_.frames_done) * frame_duration(parameters);
     report.particle_count = particle_count();
     report.substeps = run_.substeps;
+    report.iterations = run_.iterations;
+    report.unconverged = run_.unconverged;
     report.dt_min = run_.dt_min;
     report.dt_max = run_.dt_max;
     report.dt_limit = run_.dt_limit;
-    report.density_error_mean = d.density_error_mean;
-    report.density_error_max = d.density_error_max;
+    report.density_error_mean = run_.density_error_sum / std::max(1u, run_.substeps);
+    report.density_error_max = run_.density_error_max;
     report.max_speed = d.max_speed / scale;
     report.kinetic_energy = d.kinetic_energy;
     for (int k = 0; k < 3; ++k) report.centre_of_mass[k] = d.centre_of_mass[k] / scale;
@@ -317,9 +329,10 @@ void Simulation::write_bgeo(const std::string& path) {
                                pscale.data(), mass.data()});
 }
 
-std::uint64_t Simulation::memory_for(std::uint64_t particle_count) {
+std::uint64_t Simulation::memory_for(std::uint64_t particle_count) const {
     if (particle_count > Particles::most) fail_too_many(static_cast<double>(particle_count));
-    return particle_count * Particles::bytes_per_particle() + Neighborhood::bytes(particle_count);
+    return particle_count * Particles::bytes_per_particle() + Neighborhood::bytes(particle_count) +
+           method_bytes(parameters.fluid_method, particle_count);
 }
 
 }  // namespace fontana

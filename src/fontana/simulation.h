@@ -23,7 +23,9 @@ struct RunState {
     double frame_time = 0.0;     // s into the frame under way
     std::uint32_t substeps = 0;  // of it so far
     std::uint32_t frame_begun = 0;
+    std::uint32_t iterations = 0, unconverged = 0;
     double dt_min = 0.0, dt_max = 0.0;
+    double density_error_sum = 0.0, density_error_max = 0.0;
     char dt_limit[24] = {};
     GridShape grid;
     std::uint32_t unused = 0;
@@ -63,7 +65,7 @@ class Simulation {
     void check() const;
     const DeviceInfo& device() { return solver().backend().device(); }
     std::vector<ProfileRow> profile() { return solver().backend().profile(); }
-    static std::uint64_t memory_for(std::uint64_t particle_count);
+    std::uint64_t memory_for(std::uint64_t particle_count) const;
 
  private:
     // The solver on the backend the parameters ask for; moves the particles there if they are elsewhere.
@@ -75,6 +77,7 @@ class Simulation {
     bool is_stop_asked(double frame_fraction);
     void require_no_progress() const;
     void take_substep();
+    void account_for(const SubstepReport& report);
     fontana_frame_report finish_frame(double seconds);
     double scene_spacing() const;  // in units of the scene
 

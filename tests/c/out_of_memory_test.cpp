@@ -1,5 +1,5 @@
-// Every allocation of a run fails once: each time the call says so, nothing leaks or crashes, and the simulation goes on
-// as if nothing had been.
+// Every allocation of a run fails once: each time the call says so, nothing leaks or crashes, and the simulation goes
+// on as if nothing had been.
 //
 //   out_of_memory_test FOLDER
 #include <pthread.h>
@@ -48,7 +48,7 @@ void require_ok(fontana_status status) {
 }
 
 class Run {
-   public:
+ public:
     explicit Run(const std::string& folder) : checkpoint_(folder + "/state.checkpoint") {
         require_ok(fontana_create(&simulation_));
         require_ok(fontana_set_text(simulation_, "solver.backend", "cpu"));
@@ -64,19 +64,30 @@ class Run {
     static bool is_frame(int number) { return number == 4 || number == 6 || number == 9; }
     // Step `number` of a short life, each of which can be tried again after it failed.
     fontana_status take_step(int number) {
-        const float position[6] = {0.0f, 0.0f, 0.0f, 0.05f, 0.0f, 0.0f}, force[6] = {0.0f, 1.0f, 0.0f, 0.0f, 1.0f, 0.0f};
+        const float position[6] = {0.0f, 0.0f, 0.0f, 0.05f, 0.0f, 0.0f},
+                    force[6] = {0.0f, 1.0f, 0.0f, 0.0f, 1.0f, 0.0f};
         std::uint32_t neighbors[1000];
         switch (number) {
-            case 0: return add_jet();
-            case 1: return add_moving_floor();
-            case 2: return fontana_add_particles(simulation_, 2, position, nullptr, nullptr);
-            case 3: return fontana_set_force(simulation_, 2, force);
-            case 4: return fontana_step_frame(simulation_, nullptr);
-            case 5: return fontana_save_checkpoint(simulation_, checkpoint_.c_str(), "tag");
-            case 6: return fontana_step_frame(simulation_, nullptr);
-            case 7: return fontana_count_neighbors(simulation_, neighbors, fontana_particle_count(simulation_));
-            case 8: return fontana_load_checkpoint(simulation_, checkpoint_.c_str());
-            default: return fontana_step_frame(simulation_, nullptr);
+            case 0:
+                return add_jet();
+            case 1:
+                return add_moving_floor();
+            case 2:
+                return fontana_add_particles(simulation_, 2, position, nullptr, nullptr);
+            case 3:
+                return fontana_set_force(simulation_, 2, force);
+            case 4:
+                return fontana_step_frame(simulation_, nullptr);
+            case 5:
+                return fontana_save_checkpoint(simulation_, checkpoint_.c_str(), "tag");
+            case 6:
+                return fontana_step_frame(simulation_, nullptr);
+            case 7:
+                return fontana_count_neighbors(simulation_, neighbors, fontana_particle_count(simulation_));
+            case 8:
+                return fontana_load_checkpoint(simulation_, checkpoint_.c_str());
+            default:
+                return fontana_step_frame(simulation_, nullptr);
         }
     }
 
@@ -94,7 +105,7 @@ class Run {
         return fontana_hash(hashes.data(), 8 * hashes.size());
     }
 
-   private:
+ private:
     // Two layers a frame: the arrays grow.
     fontana_status add_jet() {
         fontana_emitter jet;

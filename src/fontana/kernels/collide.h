@@ -31,9 +31,9 @@ FN Contact plane_contact(ColliderConstants s, Motion m) {
 }
 
 // inside: +1 keeps the fluid within the radius, -1 without.
-FN Contact round_contact(ColliderConstants s, Motion m, float inside, float is_cylinder) {
+FN Contact round_distance(ColliderConstants s, Motion m, float inside, uint is_cylinder) {
     const float dx = m.x - s.centre_x;
-    const float dy = is_cylinder > 0.0f ? 0.0f : m.y - s.centre_y;
+    const float dy = is_cylinder ? 0.0f : m.y - s.centre_y;
     const float dz = m.z - s.centre_z;
     const float r = SQRT(dx * dx + dy * dy + dz * dz);
     const float inverse_r = r > 1.0e-12f ? 1.0f / r : 0.0f;
@@ -44,8 +44,21 @@ FN Contact round_contact(ColliderConstants s, Motion m, float inside, float is_c
     contact.nz = -inside * dz * inverse_r;
     // On the axis or in the centre any way out is as good as another.
     if (inverse_r == 0.0f) contact.nx = 1.0f;
+    return contact;
+}
+
+// How far behind the bare surface a particle is, negative in front of it, and the normal into the fluid.
+FN Contact surface_distance(ColliderConstants s, Motion m) {
+    if (s.type <= 2u) return plane_contact(s, m);
+    return round_distance(s, m, s.type == 3u || s.type == 5u ? 1.0f : -1.0f, s.type >= 5u ? 1u : 0u);
+}
+
+// The same with the ends of a wall: its thickness, and the rim that a cylinder has at the cutoff.
+FN Contact contact_with(ColliderConstants s, Motion m) {
+    Contact contact = surface_distance(s, m);
+    if (s.type <= 2u) return contact;
     if (contact.depth > s.thickness) contact.depth = 0.0f;
-    if (is_cylinder > 0.0f && contact.depth > 0.0f) {
+    if (s.type >= 5u && contact.depth > 0.0f) {
         const float below_rim = s.cutoff - m.y;
         if (below_rim <= contact.depth) {
             contact.depth = below_rim;
@@ -55,11 +68,6 @@ FN Contact round_contact(ColliderConstants s, Motion m, float inside, float is_c
         }
     }
     return contact;
-}
-
-FN Contact contact_with(ColliderConstants s, Motion m) {
-    if (s.type <= 2u) return plane_contact(s, m);
-    return round_contact(s, m, s.type == 3u || s.type == 5u ? 1.0f : -1.0f, s.type >= 5u ? 1.0f : 0.0f);
 }
 
 FN Motion collide(ColliderConstants s, Motion m) {

@@ -10,6 +10,16 @@ FN float equation_of_state(const StepConstants c, float density) {
     return max_f(c.minimum_pressure, c.pressure_constant * (density - c.rest_density));
 }
 
+// What `density` ends with: from the sum without its constant to what it puts out.
+FN void store_pressure_state(const StepConstants c, uint i, float sum, float4 x_i, float4 v_i,
+                             GLOBAL float* RESTRICT density_out, GLOBAL float4* RESTRICT packed_position,
+                             GLOBAL float4* RESTRICT packed_velocity) {
+    const float density_i = c.poly6_scale * sum;
+    density_out[i] = density_i;
+    packed_position[i] = MAKE_FLOAT4(x_i.x, x_i.y, x_i.z, x_i.w / density_i);
+    packed_velocity[i] = MAKE_FLOAT4(v_i.x, v_i.y, v_i.z, equation_of_state(c, density_i));
+}
+
 // density_i = sum_j m_j W_poly6(x_ij), eq. 2.8.
 //
 // position: x, y, z, mass. Out: `packed_position` = x, y, z, m/density and `packed_velocity` = vx, vy, vz, p, the
@@ -33,11 +43,7 @@ KERNEL void density(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTR
             if (r_squared < c.support_radius_squared) sum += x_j.w * poly6(r_squared, c.support_radius_squared);
         }
     }
-    const float density_i = c.poly6_scale * sum;
-    const float4 v_i = velocity[i];
-    density_out[i] = density_i;
-    packed_position[i] = MAKE_FLOAT4(x_i.x, x_i.y, x_i.z, x_i.w / density_i);
-    packed_velocity[i] = MAKE_FLOAT4(v_i.x, v_i.y, v_i.z, equation_of_state(c, density_i));
+    store_pressure_state(c, i, sum, x_i, velocity[i], density_out, packed_position, packed_velocity);
 }
 
 #endif

@@ -39,7 +39,8 @@ typedef unsigned int uint;
 #else  // C++: a kernel is an inline function of the thread's index; the cpu backend loops over it.
 
 #include "backends/cpu/device_types.h"
-#define FN static inline
+// Always: a formula takes the constants by value, which must cost nothing.
+#define FN static inline __attribute__((always_inline))
 #define KERNEL static inline
 #define GLOBAL
 #define RESTRICT __restrict
@@ -53,5 +54,11 @@ typedef unsigned int uint;
 
 FN float min_f(float a, float b) { return a < b ? a : b; }
 FN float max_f(float a, float b) { return a > b ? a : b; }
+
+// What a pair of particles is computed in: one neighbour at a time, or, where a backend includes the pair formulas
+// again with vectors of them (backends/cpu/wide_kernels.cpp), several at once.
+#define REAL float
+#define REAL4 float4
+#define REAL_ZERO 0.0f
 
 #endif

@@ -5,22 +5,23 @@
 
 #include "step_constants.h"
 
-// Per lane: max |v|^2 and max |a|^2, for the time step. A NaN wins over every number, so that it is not lost.
-KERNEL void reduce_motion(THREAD_ARG const StepConstants c, const uint lane_count,
-                          GLOBAL const float4* RESTRICT velocity, GLOBAL const float4* RESTRICT acceleration,
-                          GLOBAL float* RESTRICT speed_squared, GLOBAL float* RESTRICT acceleration_squared) {
+// Per lane: max |v|^2, max |a|^2, sum and max of the density error. A NaN wins over every number, so that it is not
+// lost.
+KERNEL void reduce_step(THREAD_ARG const StepConstants c, const uint lane_count, GLOBAL const float4* RESTRICT velocity,
+                        GLOBAL const float4* RESTRICT acceleration, GLOBAL const float* RESTRICT density_in,
+                        GLOBAL float4* RESTRICT extremes) {
     const uint lane = THREAD_INDEX;
     if (lane >= lane_count) return;
-    float max_v = 0.0f, max_a = 0.0f;
+    float4 e = MAKE_FLOAT4(0.0f, 0.0f, 0.0f, 0.0f);
     for (uint i = lane; i < c.particle_count; i += lane_count) {
         const float4 v = velocity[i], a = acceleration[i];
         const float v_squared = v.x * v.x + v.y * v.y + v.z * v.z;
         const float a_squared = a.x * a.x + a.y * a.y + a.z * a.z;
-        if (!(v_squared <= max_v)) max_v = v_squared;
-        if (!(a_squared <= max_a)) max_a = a_squared;
+        const float error = max_f(0.0f, density_in[i] * c.inverse_rest_density - 1.0f);
+        e = MAKE_FLOAT4(v_squared <= e.x ? e.x : v_squared, a_squared <= e.y ? e.y : a_squared, e.z + error,
+                        max_f(e.w, error));
     }
-    speed_squared[lane] = max_v;
-    acceleration_squared[lane] = max_a;
+    extremes[lane] = e;
 }
 
 // Per lane: the smallest and largest position.
@@ -57,6 +58,26 @@ KERNEL void reduce_diagnostics(THREAD_ARG const StepConstants c, const uint lane
     }
     moment[lane] = m;
     measure[lane] = d;
+}
+
+// Per lane: the largest of whole numbers (neighbour counts).
+KERNEL void reduce_largest(THREAD_ARG const uint count, const uint lane_count, GLOBAL const uint* RESTRICT value,
+                           GLOBAL uint* RESTRICT largest) {
+    const uint lane = THREAD_INDEX;
+    if (lane >= lane_count) return;
+    uint found = 0u;
+    for (uint i = lane; i < count; i += lane_count) found = value[i] > found ? value[i] : found;
+    largest[lane] = found;
+}
+
+// Per lane: the sum.
+KERNEL void reduce_sum(THREAD_ARG const uint count, const uint lane_count, GLOBAL const float* RESTRICT value,
+                       GLOBAL float* RESTRICT out) {
+    const uint lane = THREAD_INDEX;
+    if (lane >= lane_count) return;
+    float total = 0.0f;
+    for (uint i = lane; i < count; i += lane_count) total += value[i];
+    out[lane] = total;
 }
 
 #endif

@@ -39,4 +39,9 @@ KERNEL void words_by_id(THREAD_ARG const uint count, GLOBAL const uint* RESTRICT
     if (i < count) out[id[i]] = value[i];
 }
 
+KERNEL void clear_words(THREAD_ARG const uint count, GLOBAL uint* RESTRICT words) {
+    const uint i = THREAD_INDEX;
+    if (i < count) words[i] = 0u;
+}
+
 #endif

@@ -7,41 +7,41 @@
 #include "dialect.h"
 
 // W_poly6 = 315 / (64 pi H^9) (H^2 - r^2)^3
-FN float poly6(float r_squared, float support_squared) {
-    const float t = support_squared - r_squared;
+FN REAL poly6(REAL r_squared, float support_squared) {
+    const REAL t = support_squared - r_squared;
     return t * t * t;
 }
 
 // grad W_poly6 = -945 / (32 pi H^9) (H^2 - r^2)^2 x_ij: the factor on x_ij
-FN float poly6_gradient(float r_squared, float support_squared) {
-    const float t = support_squared - r_squared;
+FN REAL poly6_gradient(REAL r_squared, float support_squared) {
+    const REAL t = support_squared - r_squared;
     return t * t;
 }
 
 // lap W_poly6 = -945 / (32 pi H^9) (H^2 - r^2) (3 H^2 - 7 r^2)
-FN float poly6_laplacian(float r_squared, float support_squared) {
+FN REAL poly6_laplacian(REAL r_squared, float support_squared) {
     return (support_squared - r_squared) * (3.0f * support_squared - 7.0f * r_squared);
 }
 
 // W_spiky = 15 / (pi H^6) (H - r)^3
-FN float spiky(float r, float support) {
-    const float t = support - r;
+FN REAL spiky(REAL r, float support) {
+    const REAL t = support - r;
     return t * t * t;
 }
 
 // grad W_spiky = -45 / (pi H^6) (H - r)^2 x_ij / r: the factor on x_ij / r
-FN float spiky_gradient(float r, float support) {
-    const float t = support - r;
+FN REAL spiky_gradient(REAL r, float support) {
+    const REAL t = support - r;
     return t * t;
 }
 
 // W_viscosity = 15 / (2 pi H^3) (-r^3 / 2H^3 + r^2 / H^2 + H / 2r - 1), for r > 0
-FN float viscosity_kernel(float r, float support) {
-    const float q = r / support;
+FN REAL viscosity_kernel(REAL r, float support) {
+    const REAL q = r / support;
     return -0.5f * q * q * q + q * q + 0.5f / q - 1.0f;
 }
 
 // lap W_viscosity = 45 / (pi H^6) (H - r)
-FN float viscosity_laplacian(float r, float support) { return support - r; }
+FN REAL viscosity_laplacian(REAL r, float support) { return support - r; }
 
 #endif

@@ -17,6 +17,11 @@ typedef struct StepConstants {
     float spiky_gradient_scale;             // 45 / (pi H^6)
     float viscosity_laplacian_scale;        // 45 / (pi H^6)
     float poly6_gradient_scale;             // 945 / (32 pi H^9)
+    float kernel_scale;                     // 1/m^3, of the spline (spline.h)
+    float inverse_support_radius;           // 1/m
+    float wall_offset;                      // m: how far behind its surface a wall's fluid begins (walls.h)
+    float inverse_rest_density;             // m^3/kg
+    float inverse_dt;                       // 1/s
     float minimum_normal;                   // 1/m: below this the colour field's gradient is no surface
     float gravity_x, gravity_y, gravity_z;  // m/s^2
     float wind_x, wind_y, wind_z;           // m/s
@@ -29,7 +34,12 @@ typedef struct StepConstants {
     uint has_force;                              // whether the array of forces is in use
     uint use_grid;                               // 0: all pairs
     uint grid_mask_x, grid_mask_y, grid_mask_z;  // cells along an axis, less one; counts are powers of two
-    uint grid_shift_y, grid_shift_z;             // where y and z stand in a cell's key
+    uint use_wendland;                           // instead of the cubic spline
+    uint list_capacity;                          // neighbours a particle's list has room for
+    uint list_particle_stride;  // the k-th neighbour of particle i is at i * particle stride + k * neighbor stride
+    uint list_neighbor_stride;
+    uint list_padding;                // lists are filled up to a multiple of this
+    uint grid_shift_y, grid_shift_z;  // where y and z stand in a cell's key
 } StepConstants;
 
 // An implicit surface, as the kernels see it: III.7 of the thesis. Units as in fontana_collider.

@@ -39,9 +39,7 @@ double random_shift(std::uint64_t emitter, std::uint64_t particle, std::uint64_t
     return static_cast<double>(z >> 11) * 0x1p-52 - 1.0;
 }
 
-bool is_within(double radius, const Vector& p) {
-    return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] <= radius * radius;
-}
+bool is_within(double radius, const Vector& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2] <= radius * radius; }
 
 }  // namespace
 
@@ -59,8 +57,7 @@ fontana_emitter Emitter::defaults(fontana_emitter_type type) {
 
 Emitter::Emitter(const fontana_emitter& settings, std::uint32_t index) : settings_(settings), index_(index) {
     const int type = number_of(settings.type);
-    require(type >= FONTANA_BLOCK && type <= FONTANA_DISC,
-            "unknown type; expected 0 (block), 1 (sphere) or 2 (disc)");
+    require(type >= FONTANA_BLOCK && type <= FONTANA_DISC, "unknown type; expected 0 (block), 1 (sphere) or 2 (disc)");
     require(is_finite(settings.centre) && is_finite(settings.velocity), "centre and velocity must be finite");
     require(settings.type != FONTANA_BLOCK || (is_finite(settings.size) && settings.size[0] > 0.0 &&
                                                settings.size[1] > 0.0 && settings.size[2] > 0.0),

@@ -1,27 +1,85 @@
 #include "solver/constants.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "kernels/smoothing.h"
+#include "kernels/spline.h"
 
 namespace fontana {
 namespace {
 
 constexpr double k_pi = 3.14159265358979323846;
 
-// sum of W_poly6 over a cubic lattice, one point at the origin: 1 / (volume of a particle).
-double lattice_sum(double spacing, double support) {
-    // From here on the sum is the integral, 1, to more digits than a float has.
-    if (support > 32.0 * spacing) return 1.0 / (spacing * spacing * spacing);
+bool uses_spline(const Parameters& p) { return p.fluid_method != "mueller"; }
+
+double spline_scale(const Parameters& p, double support) {
+    return (p.fluid_kernel == "wendland" ? 21.0 / 2.0 : 8.0) / (k_pi * support * support * support);
+}
+
+// What the functions of spline.h read.
+StepConstants spline_constants(const Parameters& p) {
+    const double support = support_radius(p);
+    StepConstants c{};
+    c.kernel_scale = static_cast<float>(spline_scale(p, support));
+    c.use_wendland = p.fluid_kernel == "wendland" ? 1u : 0u;
+    c.support_radius = static_cast<float>(support);
+    c.inverse_support_radius = 1.0f / c.support_radius;
+    return c;
+}
+
+// Calls visit(r) for every other point of a cubic lattice within the support, as seen from one of its points.
+template <typename Visit>
+void for_lattice(double spacing, double support, const Visit& visit) {
     const int reach = static_cast<int>(std::ceil(support / spacing));
-    double sum = 0.0;
     for (int z = -reach; z <= reach; ++z)
         for (int y = -reach; y <= reach; ++y)
             for (int x = -reach; x <= reach; ++x) {
-                const double r_squared = spacing * spacing * (x * x + y * y + z * z);
-                if (r_squared < support * support) sum += std::pow(support * support - r_squared, 3);
+                const double r = spacing * std::sqrt(static_cast<double>(x * x + y * y + z * z));
+                if (r < support && (x || y || z)) visit(r);
             }
+}
+
+// From this many spacings on a sum over the lattice is the integral, to more digits than a float has.
+constexpr double k_most_reach = 32.0;
+
+// sum of W over the lattice, the point itself included: 1 / (volume of a particle).
+double lattice_sum(const Parameters& p) {
+    const double support = support_radius(p);
+    if (support > k_most_reach * p.fluid_particle_spacing) return 1.0 / std::pow(p.fluid_particle_spacing, 3);
+    double sum = 0.0;
+    if (uses_spline(p)) {
+        const StepConstants c = spline_constants(p);
+        sum = static_cast<double>(kernel_value(c, 0.0f));
+        for_lattice(p.fluid_particle_spacing, support,
+                    [&](double r) { sum += static_cast<double>(kernel_value(c, static_cast<float>(r))); });
+        return sum;
+    }
+    sum = std::pow(support, 6);
+    for_lattice(p.fluid_particle_spacing, support, [&](double r) { sum += std::pow(support * support - r * r, 3); });
     return 315.0 / (64.0 * k_pi * std::pow(support, 9)) * sum;
+}
+
+// m: a plane's share of the density of a lattice that begins half a spacing above it must be what the lattice lacks
+// there, its layers below. Found by bisection.
+double wall_offset(const Parameters& p, const StepConstants& c) {
+    const double spacing = p.fluid_particle_spacing, support = support_radius(p);
+    if (support > k_most_reach * spacing) return 0.0;
+    const int reach = static_cast<int>(std::ceil(support / spacing));
+    double below = 0.0;
+    for (int z = 1; z <= reach; ++z)
+        for (int y = -reach; y <= reach; ++y)
+            for (int x = -reach; x <= reach; ++x) {
+                const double r = spacing * std::sqrt(static_cast<double>(x * x + y * y + z * z));
+                below += r < support ? static_cast<double>(kernel_value(c, static_cast<float>(r))) : 0.0;
+            }
+    const double missing = below / lattice_sum(p);
+    double near = 0.0, far = support;
+    for (int k = 0; k < 60; ++k) {
+        const double middle = 0.5 * (near + far);
+        const double share = static_cast<double>(half_space_share(c, static_cast<float>(middle / support)));
+        (share > missing ? near : far) = middle;
+    }
+    return near - 0.5 * spacing;
 }
 
 }  // namespace
@@ -34,10 +92,29 @@ double sampling_distance(const Parameters& p) { return 0.5 * support_radius(p); 
 
 double particle_mass(const Parameters& p) {
     if (p.fluid_particle_mass > 0.0) return p.fluid_particle_mass;
-    return p.fluid_rest_density / lattice_sum(p.fluid_particle_spacing, support_radius(p));
+    return p.fluid_rest_density / lattice_sum(p);
 }
 
 double frame_duration(const Parameters& p) { return p.time_timestep > 0.0 ? p.time_timestep : 1.0 / p.time_frame_rate; }
+
+double density_error_tolerance(const Parameters& p) {
+    if (p.solver_quality == "draft") return 1e-2;
+    if (p.solver_quality == "good") return 1e-3;
+    if (p.solver_quality == "final") return 1e-4;
+    return 0.01 * p.solver_density_error;
+}
+
+double pcisph_delta(const Parameters& p) {
+    const StepConstants c = spline_constants(p);
+    const double support = support_radius(p), spacing = std::max(p.fluid_particle_spacing, support / k_most_reach);
+    const double volume = particle_mass(p) / p.fluid_rest_density;
+    double squares = 0.0;  // on a lattice the gradients themselves add up to nothing
+    for_lattice(spacing, support, [&](double r) {
+        const double gradient = r * static_cast<double>(kernel_gradient(c, static_cast<float>(r)));
+        squares += volume * std::pow(spacing, 3) * gradient * gradient;
+    });
+    return 0.5 / squares;
+}
 
 fontana_derived derive(const Parameters& p) {
     const double support = support_radius(p);
@@ -47,14 +124,15 @@ fontana_derived derive(const Parameters& p) {
     derived.kinematic_viscosity = p.fluid_viscosity / p.fluid_rest_density;
     derived.speed_of_sound = std::sqrt(p.fluid_pressure_constant);
     derived.frame_duration = frame_duration(p);
-    derived.self_density = derived.particle_mass * 315.0 / (64.0 * k_pi * std::pow(support, 3));
+    const double own_value = uses_spline(p) ? spline_scale(p, support) : 315.0 / (64.0 * k_pi * std::pow(support, 3));
+    derived.self_density = derived.particle_mass * own_value;
     return derived;
 }
 
 StepConstants make_constants(const Parameters& p) {
     const double support = support_radius(p);
-    StepConstants c{};
-    c.support_radius = static_cast<float>(support);
+    StepConstants c = spline_constants(p);
+    c.wall_offset = static_cast<float>(wall_offset(p, c));
     c.support_radius_squared = c.support_radius * c.support_radius;
     c.rest_density = static_cast<float>(p.fluid_rest_density);
     c.pressure_constant = static_cast<float>(p.fluid_pressure_constant);
@@ -68,6 +146,7 @@ StepConstants make_constants(const Parameters& p) {
     // Mueller et al. leave the threshold open. On a flat surface |n| is about 1.1 / H; well inside, noise of a few
     // hundredths of it.
     c.minimum_normal = static_cast<float>(0.2 / support);
+    c.inverse_rest_density = 1.0f / c.rest_density;
     c.gravity_x = static_cast<float>(p.forces_gravity[0]);
     c.gravity_y = static_cast<float>(p.forces_gravity[1]);
     c.gravity_z = static_cast<float>(p.forces_gravity[2]);

@@ -15,6 +15,10 @@ double sampling_distance(const Parameters& parameters);
 double particle_mass(const Parameters& parameters);
 // s, of simulated time.
 double frame_duration(const Parameters& parameters);
+// Mean density error at which a pressure solve stops, as a share: solver.quality or solver.density_error.
+double density_error_tolerance(const Parameters& parameters);
+// m^2 for a full neighbourhood: 1 / (2 (|sum V grad W|^2 + sum |V grad W|^2)), over a lattice at the spacing (PCISPH).
+double pcisph_delta(const Parameters& parameters);
 fontana_derived derive(const Parameters& parameters);
 
 // Everything but what changes by the substep: counts, dt and the grid.

@@ -42,19 +42,42 @@ Bounds measure_bounds(Backend& backend, Particles& particles, StepConstants cons
     return bounds;
 }
 
-MotionExtremes measure_motion(Backend& backend, Particles& particles, StepConstants constants) {
+StepExtremes measure_step(Backend& backend, Particles& particles, StepConstants constants) {
     constants.particle_count = static_cast<std::uint32_t>(particles.count());
     const std::uint32_t lane_count = lanes_for(particles.count());
-    const auto speed = backend.allocate("speed", lane_count * 4);
-    const auto acceleration = backend.allocate("acceleration lanes", lane_count * 4);
-    backend.launch(Kernel::reduce_motion, lane_count,
-                   {constants, lane_count, particles.velocity(), particles.acceleration(), *speed, *acceleration});
-    MotionExtremes extremes{0.0, 0.0};
-    for (const float v : lanes<float>(backend, *speed, lane_count))
-        extremes.speed = larger(extremes.speed, static_cast<double>(v));
-    for (const float a : lanes<float>(backend, *acceleration, lane_count))
-        extremes.acceleration = larger(extremes.acceleration, static_cast<double>(a));
-    return {std::sqrt(extremes.speed), std::sqrt(extremes.acceleration)};
+    const auto extremes = backend.allocate("extremes", lane_count * 16);
+    backend.launch(
+        Kernel::reduce_step, lane_count,
+        {constants, lane_count, particles.velocity(), particles.acceleration(), particles.density(), *extremes});
+    StepExtremes step{};
+    for (const float4& lane : lanes<float4>(backend, *extremes, lane_count)) {
+        step.speed = larger(step.speed, static_cast<double>(lane.x));
+        step.acceleration = larger(step.acceleration, static_cast<double>(lane.y));
+        step.density_error_mean += static_cast<double>(lane.z);
+        step.density_error_max = larger(step.density_error_max, static_cast<double>(lane.w));
+    }
+    step.speed = std::sqrt(step.speed);
+    step.acceleration = std::sqrt(step.acceleration);
+    step.density_error_mean /= static_cast<double>(particles.count());
+    return step;
+}
+
+std::uint32_t largest_of(Backend& backend, const Buffer& values, std::size_t count) {
+    const std::uint32_t lane_count = lanes_for(count);
+    const auto largest = backend.allocate("largest", lane_count * 4);
+    backend.launch(Kernel::reduce_largest, lane_count,
+                   {static_cast<std::uint32_t>(count), lane_count, values, *largest});
+    const auto found = lanes<std::uint32_t>(backend, *largest, lane_count);
+    return *std::max_element(found.begin(), found.end());
+}
+
+double mean_of(Backend& backend, const Buffer& values, std::size_t count) {
+    const std::uint32_t lane_count = lanes_for(count);
+    const auto sums = backend.allocate("sums", lane_count * 4);
+    backend.launch(Kernel::reduce_sum, lane_count, {static_cast<std::uint32_t>(count), lane_count, values, *sums});
+    double total = 0.0;
+    for (const float sum : lanes<float>(backend, *sums, lane_count)) total += static_cast<double>(sum);
+    return total / static_cast<double>(count);
 }
 
 bool Diagnostics::is_finite() const {

@@ -12,11 +12,17 @@ struct Bounds {
 };
 Bounds measure_bounds(Backend& backend, Particles& particles, StepConstants constants);
 
-// The fastest and the most accelerated particle: m/s, m/s^2. NaN if any particle has a NaN.
-struct MotionExtremes {
+// The fastest and the most accelerated particle (m/s, m/s^2), and by how much the density is above rest. NaN if any
+// particle has a NaN.
+struct StepExtremes {
     double speed, acceleration;
+    double density_error_mean, density_error_max;
 };
-MotionExtremes measure_motion(Backend& backend, Particles& particles, StepConstants constants);
+StepExtremes measure_step(Backend& backend, Particles& particles, StepConstants constants);
+
+// Of `count` values on the device.
+std::uint32_t largest_of(Backend& backend, const Buffer& values, std::size_t count);
+double mean_of(Backend& backend, const Buffer& values, std::size_t count);
 
 struct Diagnostics {
     double mass;                // kg

@@ -32,7 +32,9 @@ fontana_time_step_limits time_step_limits(const Parameters& p, double speed, dou
     fontana_time_step_limits limits{};
     limits.advection = factor * quotient(0.4 * d, speed);
     limits.acceleration = factor * 0.25 * std::sqrt(quotient(2.0 * d, acceleration));
-    limits.acoustic = factor * quotient(0.4 * d, std::sqrt(p.fluid_pressure_constant));
+    const bool is_stiff = p.fluid_method == "mueller" || p.fluid_method == "wcsph";
+    limits.acoustic = is_stiff ? factor * quotient(0.4 * d, std::sqrt(p.fluid_pressure_constant)) : k_infinity;
+    limits.convergence = is_stiff ? k_infinity : factor * 0.1 * d;
     limits.viscosity = factor * quotient(0.1 * d * d * density, p.fluid_viscosity);
     limits.surface_tension =
         factor * 0.4 * std::sqrt(quotient(density * d * d * d, 2.0 * k_pi * p.fluid_surface_tension));
@@ -43,8 +45,13 @@ TimeStep choose_time_step(const Parameters& p, double speed, double acceleration
     if (p.time_substeps > 0) return {frame_duration(p) / p.time_substeps, "fixed"};
     const fontana_time_step_limits limits = time_step_limits(p, speed, acceleration);
     const std::pair<double, const char*> candidates[] = {
-        {remaining, "frame"},          {limits.advection, "advection"}, {limits.acceleration, "acceleration"},
-        {limits.acoustic, "acoustic"}, {limits.viscosity, "viscosity"}, {limits.surface_tension, "surface_tension"},
+        {remaining, "frame"},
+        {limits.advection, "advection"},
+        {limits.acceleration, "acceleration"},
+        {limits.acoustic, "acoustic"},
+        {limits.viscosity, "viscosity"},
+        {limits.surface_tension, "surface_tension"},
+        {limits.convergence, "convergence"},
     };
     const auto& smallest = *std::min_element(std::begin(candidates), std::end(candidates));
     // A step that would leave a sliver takes its share of the rest instead.
@@ -80,6 +87,7 @@ void check_time_step(const Parameters& p) {
         fail(FONTANA_BAD_INPUT, "a viscosity of " + text_of(p.fluid_viscosity) + " Pa*s is unstable at a step of " +
                                     text_of(dt) + " s: use time.substeps " + text_of(std::ceil(frame / viscous_bound)) +
                                     " or more, or 0 for automatic");
+    if (limits.acoustic == k_infinity) return;
     const double acoustic_bound = quotient(h, std::sqrt(p.fluid_pressure_constant));
     if (dt > acoustic_bound)
         fail(FONTANA_BAD_INPUT, "a pressure constant of " + text_of(p.fluid_pressure_constant) +

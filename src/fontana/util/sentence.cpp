@@ -12,7 +12,12 @@ constexpr std::size_t k_longest = 8000;  // bytes: the longest path and a senten
 std::size_t character_bytes(const std::string& text, std::size_t index) {
     const auto byte = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u; };
     const unsigned first = byte(index), second = byte(index + 1);
-    const std::size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+    const std::size_t length = first < 0x80   ? 1
+                               : first < 0xc2 ? 0
+                               : first < 0xe0 ? 2
+                               : first < 0xf0 ? 3
+                               : first < 0xf5 ? 4
+                                              : 0;
     for (std::size_t k = 1; k < length; ++k)
         if ((byte(index + k) & 0xc0) != 0x80) return 0;
     const bool is_overlong = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);

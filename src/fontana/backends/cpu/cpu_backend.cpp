@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "backends/cpu/cpu_kernels.h"
+#include "backends/cpu/device_types.h"
 #include "backends/cpu/radix_sort.h"
 #include "backends/cpu/thread_pool.h"
 #include "util/error.h"
@@ -33,22 +34,31 @@ class CpuBuffer : public Buffer {
 
  private:
     static constexpr std::align_val_t k_alignment{64};
+    // A loop over vectors of eight particles reads, but does not use, up to seven beyond the last.
+    static constexpr std::size_t k_slack = 8 * sizeof(float4);
     char* data_;
 };
 
 char* data_of(const Buffer& buffer) { return static_cast<const CpuBuffer&>(buffer).data(); }
 
 struct KernelTable {
-    const CpuKernel* kernels;
+    std::vector<CpuKernel> kernels;  // indexed by Kernel
     const char* instruction_set;
 };
 
 KernelTable choose_kernels(bool strict) {
-    if (strict) return {strict_kernels(), "strict arithmetic"};
+    constexpr auto count = static_cast<std::size_t>(Kernel::count);
+    if (strict) return {{strict_kernels(), strict_kernels() + count}, "strict arithmetic"};
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return {avx2_kernels(), "AVX2"};
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+        KernelTable table{{avx2_kernels(), avx2_kernels() + count}, "AVX2"};
+        for (std::size_t k = 0; k < count; ++k)
+            if (const KernelLoop loop = wide_loop(kernel_facts(static_cast<Kernel>(k)).name))
+                table.kernels[k].run = loop;
+        return table;
+    }
 #endif
-    return {baseline_kernels(), "baseline instructions"};
+    return {{baseline_kernels(), baseline_kernels() + count}, "baseline instructions"};
 }
 
 std::string processor_name() {
@@ -107,7 +117,7 @@ class CpuBackend : public Backend {
     }
 
     void launch(Kernel kernel, std::size_t count, KernelArguments arguments) override {
-        const CpuKernel& code = kernels_[static_cast<int>(kernel)];
+        const CpuKernel& code = kernels_[static_cast<std::size_t>(kernel)];
         void* addresses[16];
         collect(kernel, code, arguments, addresses);
         timed(kernel_facts(kernel).name, [&] {
@@ -173,7 +183,7 @@ class CpuBackend : public Backend {
     }
 
     DeviceInfo info_;
-    const CpuKernel* kernels_;
+    std::vector<CpuKernel> kernels_;
     bool profile_;
     ThreadPool pool_;
     RadixSort sorter_;
@@ -189,7 +199,8 @@ std::unique_ptr<Backend> make_cpu_backend(const BackendOptions& options) {
         return std::make_unique<CpuBackend>(options);
     } catch (const std::system_error& error) {
         fail(FONTANA_OUT_OF_MEMORY, std::string("out of memory or threads: the system does not start as many as "
-                                                "solver.threads asks for (") + error.what() + ")");
+                                                "solver.threads asks for (") +
+                                        error.what() + ")");
     }
 }
 

@@ -1,24 +1,10 @@
 // Compiled once per variant, with FONTANA_CPU_KERNELS as the name of the table's function (see CMakeLists.txt).
 #include "backends/cpu/cpu_kernels.h"
 
-#include <utility>
-
 #include "kernels/kernels.h"
 
 namespace fontana {
 namespace {
-
-template <typename T>
-struct Argument {  // a value
-    static constexpr std::size_t bytes = sizeof(T);
-    static const T& get(void* address) { return *static_cast<const T*>(address); }
-};
-
-template <typename T>
-struct Argument<T*> {  // a buffer
-    static constexpr std::size_t bytes = 0;
-    static T* get(void* address) { return static_cast<T*>(address); }
-};
 
 // Reads the signature of a kernel, so that no list of arguments is kept by hand.
 template <typename Signature>
@@ -26,7 +12,7 @@ struct Loop;
 
 template <typename... T>
 struct Loop<void (*)(uint, T...)> {
-    static constexpr std::size_t value_bytes[] = {Argument<T>::bytes...};
+    static constexpr std::size_t value_bytes[] = {KernelValue<T>::bytes...};
 
     template <void (*kernel)(uint, T...)>
     static void run(void* const* arguments, std::size_t begin, std::size_t end) {
@@ -35,7 +21,7 @@ struct Loop<void (*)(uint, T...)> {
 
     template <void (*kernel)(uint, T...), std::size_t... k>
     static void run_with(void* const* arguments, std::size_t begin, std::size_t end, std::index_sequence<k...>) {
-        for (std::size_t i = begin; i < end; ++i) kernel(static_cast<uint>(i), Argument<T>::get(arguments[k])...);
+        for (std::size_t i = begin; i < end; ++i) kernel(static_cast<uint>(i), KernelValue<T>::get(arguments[k])...);
     }
 };
 

@@ -4,12 +4,16 @@
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
+#include <utility>
 
 namespace fontana {
 
+// arguments[k]: the data of a buffer, or the address of a value.
+using KernelLoop = void (*)(void* const* arguments, std::size_t begin, std::size_t end);
+
 struct CpuKernel {
-    // arguments[k]: the data of a buffer, or the address of a value.
-    void (*run)(void* const* arguments, std::size_t begin, std::size_t end);
+    KernelLoop run;
     int argument_count;
     const std::size_t* value_bytes;  // by argument; 0 for a buffer
 };
@@ -19,6 +23,21 @@ const CpuKernel* strict_kernels();
 const CpuKernel* baseline_kernels();
 #if defined(__x86_64__)
 const CpuKernel* avx2_kernels();
+// The loop of a kernel over eight neighbours at once (AVX2 and FMA); null if it has none.
+KernelLoop wide_loop(const char* kernel);
 #endif
+
+// How a kernel's argument of type T is had from what the backend collected.
+template <typename T>
+struct KernelValue {  // a value
+    static constexpr std::size_t bytes = sizeof(T);
+    static const T& get(void* address) { return *static_cast<const T*>(address); }
+};
+
+template <typename T>
+struct KernelValue<T*> {  // a buffer
+    static constexpr std::size_t bytes = 0;
+    static T* get(void* address) { return static_cast<T*>(address); }
+};
 
 }  // namespace fontana

@@ -1,0 +1,187 @@
+// The operators that all production methods are made of, in relative density (density / rest density), with rest
+// volumes V = m / rest density and u = p / (rest density * relative density^2), in m^2/s^2:
+//   S_i     = sum_j V_j grad W_ij + walls                 (1/m)
+//   G u     = u_i S_i + sum_j V_j u_j grad W_ij           the acceleration by pressure, with a minus sign
+//   G^T a   = S_i . a_i - sum_j V_j grad W_ij . a_j       the rate at which the relative density grows under a
+// so that K = G^T G is symmetric with the diagonal D_i = |S_i|^2 + sum_j V_i V_j |grad W_ij|^2 (Bender and Koschier
+// 2017, where 1 / D_i is called alpha).
+#ifndef FONTANA_INCOMPRESSIBLE_H
+#define FONTANA_INCOMPRESSIBLE_H
+
+#include "neighbor_list.h"
+#include "pair.h"
+#include "walls.h"
+
+// What spline_density ends with: the sums over neighbours become its three results.
+FN void store_density(const StepConstants c, uint i, float volume, float relative, Real3 s, float squares,
+                      WallTerm walls, GLOBAL float* RESTRICT density_out, GLOBAL float4* RESTRICT factor,
+                      GLOBAL float* RESTRICT wall_rate) {
+    const float x = s.x + walls.gradient_x, y = s.y + walls.gradient_y, z = s.z + walls.gradient_z;
+    const float diagonal = x * x + y * y + z * z + volume * squares;
+    // Next to nobody the system is singular; such a particle feels no pressure.
+    const float inverse = diagonal * c.support_radius_squared > 4.0e-4f ? 1.0f / diagonal : 0.0f;
+    density_out[i] = relative * c.rest_density;
+    factor[i] = MAKE_FLOAT4(x, y, z, inverse);
+    wall_rate[i] = walls.rate;
+}
+
+// Density; `volume_position` = x, y, z, V; `factor` = S, 1 / D (0 where a particle is all but alone); `wall_rate`.
+KERNEL void spline_density(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
+                           GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
+                           GLOBAL const float4* RESTRICT volume_position,
+                           GLOBAL const ColliderConstants* RESTRICT collider, GLOBAL float* RESTRICT density_out,
+                           GLOBAL float4* RESTRICT factor, GLOBAL float* RESTRICT wall_rate) {
+    const uint i = THREAD_INDEX;
+    if (i >= c.particle_count) return;
+    const float4 x_i = volume_position[i];
+    const WallTerm walls = walls_at(c, collider, position[i]);
+    float relative = x_i.w * kernel_value(c, 0.0f) + walls.share, squares = 0.0f;
+    Real3 s = zero_vector();
+    const uint count = list_length(c, neighbor_count[i]);
+    for (uint k = 0u; k < count; ++k) {
+        const float4 x_j = volume_position[neighbor(c, list, i, k)];
+        const Pair pair = pair_of(x_i, x_j);
+        relative += x_j.w * kernel_value(c, pair.r);
+        s = add_gradient(s, c, x_j.w, pair);
+        squares += gradient_squared_term(c, x_j.w, pair);
+    }
+    store_density(c, i, x_i.w, relative, s, squares, walls, density_out, factor, wall_rate);
+}
+
+KERNEL void pack_volume(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
+                        GLOBAL float4* RESTRICT volume_position) {
+    const uint i = THREAD_INDEX;
+    if (i >= c.particle_count) return;
+    const float4 x = position[i];
+    volume_position[i] = MAKE_FLOAT4(x.x, x.y, x.z, x.w * c.inverse_rest_density);
+}
+
+// G^T applied to `field`, without the walls' own motion.
+FN float divergence_at(const StepConstants c, uint i, GLOBAL const uint* RESTRICT neighbor_count,
+                       GLOBAL const uint* RESTRICT list, GLOBAL const float4* RESTRICT volume_position,
+                       GLOBAL const float4* RESTRICT factor, GLOBAL const float4* RESTRICT field) {
+    const float4 x_i = volume_position[i], s = factor[i], a_i = field[i];
+    float sum = s.x * a_i.x + s.y * a_i.y + s.z * a_i.z;
+    const uint count = list_length(c, neighbor_count[i]);
+    for (uint k = 0u; k < count; ++k) {
+        const uint j = neighbor(c, list, i, k);
+        const float4 x_j = volume_position[j];
+        sum -= divergence_term(c, x_j.w, pair_of(x_i, x_j), field[j]);
+    }
+    return sum;
+}
+
+// Rate of the relative density under the velocities, 1/s: what the solves start from.
+KERNEL void density_rate(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT velocity,
+                         GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
+                         GLOBAL const float4* RESTRICT volume_position, GLOBAL const float4* RESTRICT factor,
+                         GLOBAL const float* RESTRICT wall_rate, GLOBAL float* RESTRICT rate) {
+    const uint i = THREAD_INDEX;
+    if (i >= c.particle_count) return;
+    rate[i] = divergence_at(c, i, neighbor_count, list, volume_position, factor, velocity) - wall_rate[i];
+}
+
+FN void store_gradient(uint i, float u_i, float4 s, Real3 sum, GLOBAL float4* RESTRICT gradient) {
+    gradient[i] = MAKE_FLOAT4(u_i * s.x + sum.x, u_i * s.y + sum.y, u_i * s.z + sum.z, 0.0f);
+}
+
+// G u, into `gradient`.
+KERNEL void pressure_gradient(THREAD_ARG const StepConstants c, GLOBAL const float* RESTRICT u,
+                              GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
+                              GLOBAL const float4* RESTRICT volume_position, GLOBAL const float4* RESTRICT factor,
+                              GLOBAL float4* RESTRICT gradient) {
+    const uint i = THREAD_INDEX;
+    if (i >= c.particle_count) return;
+    const float4 x_i = volume_position[i];
+    Real3 sum = zero_vector();
+    const uint count = list_length(c, neighbor_count[i]);
+    for (uint k = 0u; k < count; ++k) {
+        const uint j = neighbor(c, list, i, k);
+        const float4 x_j = volume_position[j];
+        sum = add_gradient(sum, c, x_j.w * u[j], pair_of(x_i, x_j));
+    }
+    store_gradient(i, u[i], factor[i], sum, gradient);
+}
+
+// v -= dt G u, with G u in `gradient`.
+KERNEL void push_by_pressure(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT gradient,
+                             GLOBAL float4* RESTRICT velocity) {
+    const uint i = THREAD_INDEX;
+    if (i >= c.particle_count) return;
+    const float4 g = gradient[i], v = velocity[i];
+    velocity[i] = MAKE_FLOAT4(v.x - c.dt * g.x, v.y - c.dt * g.y, v.z - c.dt * g.z, v.w);
+}
+
+FN void store_viscosity(const StepConstants c, uint i, Real3 sum, GLOBAL float4* RESTRICT acceleration) {
+    const float scale = 10.0f * c.viscosity * c.inverse_rest_density;
+    acceleration[i] = MAKE_FLOAT4(scale * sum.x, scale * sum.y, scale * sum.z, 0.0f);
+}
+
+// Viscosity as Monaghan (2005) writes the Laplacian, 2 (dimension + 2) = 10:
+//   a_i = 10 nu sum_j V_j (v_ij . x_ij) / (r^2 + 0.01 H^2) grad W_ij. Starts the acceleration.
+KERNEL void laplacian_viscosity(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT velocity,
+                                GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
+                                GLOBAL const float4* RESTRICT volume_position, GLOBAL float4* RESTRICT acceleration) {
+    const uint i = THREAD_INDEX;
+    if (i >= c.particle_count) return;
+    const float4 x_i = volume_position[i], v_i = velocity[i];
+    Real3 sum = zero_vector();
+    const uint count = list_length(c, neighbor_count[i]);
+    for (uint k = 0u; k < count; ++k) {
+        const uint j = neighbor(c, list, i, k);
+        const float4 x_j = volume_position[j];
+        const Pair pair = pair_of(x_i, x_j);
+        sum = add_gradient(sum, c, viscosity_weight(c, x_j.w, pair, v_i, velocity[j]), pair);
+    }
+    store_viscosity(c, i, sum, acceleration);
+}
+
+// v += dt a and the drag factor: the prediction that the pressure corrects.
+KERNEL void predict_velocity(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT acceleration,
+                             GLOBAL float4* RESTRICT velocity) {
+    const uint i = THREAD_INDEX;
+    if (i >= c.particle_count) return;
+    const float4 a = acceleration[i], v = velocity[i];
+    velocity[i] =
+        MAKE_FLOAT4(c.drag * (v.x + c.dt * a.x), c.drag * (v.y + c.dt * a.y), c.drag * (v.z + c.dt * a.z), v.w);
+}
+
+// x += dt v and the surfaces, which act as a net here: the walls' share of the density does the work.
+KERNEL void advect(THREAD_ARG const StepConstants c, GLOBAL const ColliderConstants* RESTRICT collider,
+                   GLOBAL float4* RESTRICT position, GLOBAL float4* RESTRICT velocity) {
+    const uint i = THREAD_INDEX;
+    if (i >= c.particle_count) return;
+    const float4 x = position[i], v = velocity[i];
+    Motion m;
+    m.vx = v.x;
+    m.vy = v.y;
+    m.vz = v.z;
+    m.x = x.x + c.dt * m.vx;
+    m.y = x.y + c.dt * m.vy;
+    m.z = x.z + c.dt * m.vz;
+    for (uint k = 0u; k < c.collider_count; ++k) m = collide(collider[k], m);
+    position[i] = MAKE_FLOAT4(m.x, m.y, m.z, x.w);
+    velocity[i] = MAKE_FLOAT4(m.vx, m.vy, m.vz, v.w);
+}
+
+// The warm start travels as the fourth component of the velocity, so that it follows its particle through every sort,
+// checkpoint and change of backend.
+KERNEL void load_warm_start(THREAD_ARG const uint count, GLOBAL const float4* RESTRICT velocity,
+                            GLOBAL const float4* RESTRICT factor, GLOBAL float* RESTRICT u) {
+    const uint i = THREAD_INDEX;
+    if (i < count) u[i] = factor[i].w > 0.0f ? velocity[i].w : 0.0f;
+}
+
+// And the pressure that goes with it, Pa: p = rest density * u * relative density^2, into packed_velocity.w.
+KERNEL void store_pressure(THREAD_ARG const StepConstants c, GLOBAL const float* RESTRICT u,
+                           GLOBAL const float* RESTRICT density_in, GLOBAL float4* RESTRICT velocity,
+                           GLOBAL float4* RESTRICT packed_velocity) {
+    const uint i = THREAD_INDEX;
+    if (i >= c.particle_count) return;
+    const float4 v = velocity[i];
+    const float relative = density_in[i] * c.inverse_rest_density;
+    velocity[i] = MAKE_FLOAT4(v.x, v.y, v.z, u[i]);
+    packed_velocity[i] = MAKE_FLOAT4(v.x, v.y, v.z, c.rest_density * u[i] * relative * relative);
+}
+
+#endif

@@ -1,0 +1,43 @@
+// The one smoothing kernel that the production methods use for density and gradient alike: cubic spline or Wendland C2
+// (Dehnen and Aly 2012), with q = r / H and H the support radius. What they have in common is that the whole solve
+// stays symmetric: the matrix of the pressure is made of the same gradient that the density changes by.
+#ifndef FONTANA_SPLINE_H
+#define FONTANA_SPLINE_H
+
+#include "step_constants.h"
+
+// W(r). Cubic: 8 / (pi H^3) (2 (1-q)^3 - 8 (1/2-q)^3, each power clamped at 0). Wendland: 21 / (2 pi H^3) (1-q)^4
+// (1+4q).
+FN REAL kernel_value(const StepConstants c, REAL r) {
+    const REAL q = r * c.inverse_support_radius, a = max_f(1.0f - q, 0.0f);
+    if (c.use_wendland) return c.kernel_scale * a * a * a * a * (1.0f + 4.0f * q);
+    const REAL b = max_f(0.5f - q, 0.0f);
+    return c.kernel_scale * (2.0f * a * a * a - 8.0f * b * b * b);
+}
+
+// The factor on x_ij of grad W: W'(r) / r. The floor on r makes it finite for coincident particles.
+FN REAL kernel_gradient(const StepConstants c, REAL r) {
+    const REAL q = r * c.inverse_support_radius, a = max_f(1.0f - q, 0.0f);
+    const float scale = c.kernel_scale * c.inverse_support_radius * c.inverse_support_radius;
+    if (c.use_wendland) return -20.0f * scale * a * a * a;
+    const REAL b = max_f(0.5f - q, 0.0f);
+    return -scale * (6.0f * a * a - 24.0f * b * b) / max_f(q, 1.0e-6f);
+}
+
+// The share of W's integral beyond a plane at signed distance s H, s >= 0, and minus its derivative by s: the
+// polynomials that integrating W over the half-space gives.
+FN REAL half_space_share(const StepConstants c, REAL s) {
+    const REAL a = max_f(1.0f - s, 0.0f), a2 = a * a;
+    if (c.use_wendland) return a2 * a2 * a2 * (3.5f - 4.5f * a + 1.5f * a2);
+    const REAL b = max_f(0.5f - s, 0.0f), b2 = b * b;
+    return a2 * a2 * a * (1.6f - (6.4f / 6.0f) * a) - b2 * b2 * b * (3.2f - (25.6f / 6.0f) * b);
+}
+
+FN REAL half_space_slope(const StepConstants c, REAL s) {
+    const REAL a = max_f(1.0f - s, 0.0f), a2 = a * a;
+    if (c.use_wendland) return a2 * a2 * a * (21.0f - 31.5f * a + 12.0f * a2);
+    const REAL b = max_f(0.5f - s, 0.0f), b2 = b * b;
+    return a2 * a2 * (8.0f - 6.4f * a) - b2 * b2 * (16.0f - 25.6f * b);
+}
+
+#endif

@@ -1,0 +1,54 @@
+// Pressure without a matrix: the equation of state of WCSPH, and the prediction and correction of PCISPH.
+#ifndef FONTANA_STIFF_PRESSURE_H
+#define FONTANA_STIFF_PRESSURE_H
+
+#include "incompressible.h"
+
+// Tait's equation, p = rest density c^2 / 7 ((density / rest density)^7 - 1) (Becker and Teschner 2007), as u. The
+// pressure constant is c^2.
+KERNEL void tait_pressure(THREAD_ARG const StepConstants c, GLOBAL const float* RESTRICT density_in,
+                          GLOBAL float* RESTRICT u) {
+    const uint i = THREAD_INDEX;
+    if (i >= c.particle_count) return;
+    const float s = density_in[i] * c.inverse_rest_density, s2 = s * s;
+    const float value = c.pressure_constant / 7.0f * (s2 * s2 * s2 * s - 1.0f) / s2;
+    u[i] = max_f(c.minimum_pressure, value);
+}
+
+// Where the particle would be at the end of the substep under `velocity` and the pressure so far; w: V.
+KERNEL void predict_position(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT volume_position,
+                             GLOBAL const float4* RESTRICT velocity, GLOBAL const float4* RESTRICT gradient,
+                             GLOBAL float4* RESTRICT predicted) {
+    const uint i = THREAD_INDEX;
+    if (i >= c.particle_count) return;
+    const float4 x = volume_position[i], v = velocity[i], g = gradient[i];
+    predicted[i] = MAKE_FLOAT4(x.x + c.dt * (v.x - c.dt * g.x), x.y + c.dt * (v.y - c.dt * g.y),
+                               x.z + c.dt * (v.z - c.dt * g.z), x.w);
+}
+
+FN void store_correction(uint i, float delta, float relative, GLOBAL float* RESTRICT u,
+                         GLOBAL float* RESTRICT residual) {
+    u[i] = max_f(0.0f, u[i] + delta * (relative - 1.0f));
+    residual[i] = max_f(0.0f, relative - 1.0f);
+}
+
+// The relative density there and the correction u += delta (relative - 1), delta (m^2) for a full neighbourhood
+// (Solenthaler and Pajarola 2009, eq. 8). The walls move too: their share at the predicted place is that of the present
+// surfaces. `residual` gets what is above rest density.
+KERNEL void correct_pressure(THREAD_ARG const StepConstants c, const float delta,
+                             GLOBAL const float4* RESTRICT predicted, GLOBAL const uint* RESTRICT neighbor_count,
+                             GLOBAL const uint* RESTRICT list, GLOBAL const ColliderConstants* RESTRICT collider,
+                             GLOBAL float* RESTRICT u, GLOBAL float* RESTRICT residual) {
+    const uint i = THREAD_INDEX;
+    if (i >= c.particle_count) return;
+    const float4 x_i = predicted[i];
+    float relative = x_i.w * kernel_value(c, 0.0f) + walls_at(c, collider, x_i).share;
+    const uint count = list_length(c, neighbor_count[i]);
+    for (uint k = 0u; k < count; ++k) {
+        const float4 x_j = predicted[neighbor(c, list, i, k)];
+        relative += x_j.w * kernel_value(c, pair_of(x_i, x_j).r);
+    }
+    store_correction(i, delta, relative, u, residual);
+}
+
+#endif

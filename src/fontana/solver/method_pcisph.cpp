@@ -1,0 +1,70 @@
+// PCISPH: Solenthaler and Pajarola 2009, the thesis's future work. Predict positions, correct the pressure by what the
+// density would be, until it is within the tolerance.
+#include <algorithm>
+#include <cmath>
+
+#include "solver/constants.h"
+#include "solver/diagnostics.h"
+#include "solver/methods.h"
+#include "solver/operators.h"
+
+namespace fontana {
+namespace {
+
+constexpr std::uint32_t k_least_iterations = 3;
+
+class Pcisph : public Method {
+ public:
+    explicit Pcisph(Backend& backend) : backend_(backend), operators_(backend) {}
+
+    void advance(Substep& s) override {
+        operators_.begin(s);
+        s.choose_time_step();
+        operators_.predict(s);
+        s.place_colliders();
+        reserve(s.particles.count());
+        solve(s);
+        operators_.compute_gradient(s, operators_.u());
+        operators_.push(s);
+        operators_.finish(s, operators_.u());
+    }
+
+ private:
+    void solve(Substep& s) {
+        const std::size_t count = s.particles.count();
+        const double tolerance = density_error_tolerance(s.parameters);
+        const auto delta = static_cast<float>(pcisph_delta(s.parameters) / (s.report.step.dt * s.report.step.dt));
+        operators_.clear_u(s);
+        s.report.converged = false;
+        for (std::uint32_t k = 1; k <= static_cast<std::uint32_t>(s.parameters.solver_max_iterations); ++k) {
+            operators_.compute_gradient(s, operators_.u());
+            backend_.launch(Kernel::predict_position, count,
+                            {s.constants, operators_.volume_position(), s.particles.velocity(), operators_.gradient(),
+                             *predicted_});
+            backend_.launch(Kernel::correct_pressure, count,
+                            {s.constants, delta, *predicted_, operators_.list().count(), operators_.list().list(),
+                             s.colliders.buffer(), operators_.u(), *residual_});
+            s.report.iterations = k;
+            if (k >= k_least_iterations && mean_of(backend_, *residual_, count) <= tolerance) {
+                s.report.converged = true;
+                return;
+            }
+        }
+    }
+
+    void reserve(std::size_t particle_count) {
+        if (predicted_ && predicted_->bytes() >= particle_count * 16) return;
+        predicted_ = backend_.allocate("predicted position", (particle_count + particle_count / 4) * 16);
+        residual_ = backend_.allocate("residual", (particle_count + particle_count / 4) * 4);
+    }
+
+    Backend& backend_;
+    Operators operators_;
+    std::unique_ptr<Buffer> predicted_, residual_;
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_pcisph(Backend& backend) { return std::make_unique<Pcisph>(backend); }
+
+}  // namespace fontana

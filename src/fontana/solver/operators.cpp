@@ -1,0 +1,68 @@
+#include "solver/operators.h"
+
+namespace fontana {
+
+void Operators::reserve(std::size_t particle_count) {
+    if (u_ && reserved_ >= particle_count) return;
+    reserved_ = particle_count + particle_count / 4;
+    volume_position_ = backend_.allocate("volume position", reserved_ * 16);
+    factor_ = backend_.allocate("factor", reserved_ * 16);
+    wall_rate_ = backend_.allocate("wall rate", reserved_ * 4);
+    rate_ = backend_.allocate("rate", reserved_ * 4);
+    gradient_ = backend_.allocate("pressure gradient", reserved_ * 16);
+    u_ = backend_.allocate("pressure", reserved_ * 4);
+}
+
+std::uint64_t Operators::bytes(std::uint64_t particle_count) {
+    return (particle_count + particle_count / 4) * (3 * 16 + 3 * 4) + NeighborList::bytes(particle_count);
+}
+
+void Operators::begin(Substep& s) {
+    const std::size_t count = s.particles.count();
+    reserve(count);
+    list_.build(s.particles, s.neighborhood, s.constants);
+    s.place_walls();
+    backend_.launch(Kernel::pack_volume, count, {s.constants, s.particles.position(), *volume_position_});
+    backend_.launch(Kernel::spline_density, count,
+                    {s.constants, s.particles.position(), list_.count(), list_.list(), *volume_position_,
+                     s.colliders.buffer(), s.particles.density(), *factor_, *wall_rate_});
+}
+
+void Operators::compute_rate(Substep& s) {
+    backend_.launch(Kernel::density_rate, s.particles.count(),
+                    {s.constants, s.particles.velocity(), list_.count(), list_.list(), *volume_position_, *factor_,
+                     *wall_rate_, *rate_});
+}
+
+void Operators::compute_gradient(Substep& s, Buffer& u) {
+    backend_.launch(Kernel::pressure_gradient, s.particles.count(),
+                    {s.constants, u, list_.count(), list_.list(), *volume_position_, *factor_, *gradient_});
+}
+
+void Operators::clear_u(Substep& s) {
+    backend_.launch(Kernel::clear_words, s.particles.count(), {static_cast<std::uint32_t>(s.particles.count()), *u_});
+}
+
+void Operators::push(Substep& s) {
+    backend_.launch(Kernel::push_by_pressure, s.particles.count(), {s.constants, *gradient_, s.particles.velocity()});
+}
+
+void Operators::predict(Substep& s) {
+    backend_.launch(Kernel::laplacian_viscosity, s.particles.count(),
+                    {s.constants, s.particles.velocity(), list_.count(), list_.list(), *volume_position_,
+                     s.particles.acceleration()});
+    s.add_surface_tension(*volume_position_);
+    s.add_external_force();
+    backend_.launch(Kernel::predict_velocity, s.particles.count(),
+                    {s.constants, s.particles.acceleration(), s.particles.velocity()});
+}
+
+void Operators::finish(Substep& s, Buffer& u) {
+    backend_.launch(Kernel::store_pressure, s.particles.count(),
+                    {s.constants, u, s.particles.density(), s.particles.velocity(), s.particles.packed_velocity()});
+    s.place_colliders();
+    backend_.launch(Kernel::advect, s.particles.count(),
+                    {s.constants, s.colliders.buffer(), s.particles.position(), s.particles.velocity()});
+}
+
+}  // namespace fontana

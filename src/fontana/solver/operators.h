@@ -1,0 +1,50 @@
+// What the production methods share: density, the operators G and G^T over the neighbour lists, viscosity, prediction
+// and advection (kernels/incompressible.h), with the arrays they work on.
+#pragma once
+
+#include <memory>
+
+#include "backends/backend.h"
+#include "solver/method.h"
+#include "solver/neighbor_list.h"
+
+namespace fontana {
+
+class Operators {
+ public:
+    explicit Operators(Backend& backend) : backend_(backend), list_(backend) {}
+
+    // Lists, densities, S and D, with the walls where they are at the start of the substep.
+    void begin(Substep& substep);
+    // Rate of the relative density under the present velocities into rate(); 1/s.
+    void compute_rate(Substep& substep);
+    // G u into gradient(); m/s^2.
+    void compute_gradient(Substep& substep, Buffer& u);
+    // u = 0.
+    void clear_u(Substep& substep);
+    // v -= dt G u.
+    void push(Substep& substep);
+    // Viscosity, surface tension and external forces; then v += dt a.
+    void predict(Substep& substep);
+    // x += dt v and collisions; the pressure goes to where hosts read it, u to where the next substep finds it.
+    void finish(Substep& substep, Buffer& u);
+
+    NeighborList& list() { return list_; }
+    Buffer& volume_position() { return *volume_position_; }
+    Buffer& factor() { return *factor_; }
+    Buffer& rate() { return *rate_; }
+    Buffer& gradient() { return *gradient_; }
+    Buffer& u() { return *u_; }
+
+    static std::uint64_t bytes(std::uint64_t particle_count);
+
+ private:
+    void reserve(std::size_t particle_count);
+
+    Backend& backend_;
+    NeighborList list_;
+    std::size_t reserved_ = 0;
+    std::unique_ptr<Buffer> volume_position_, factor_, wall_rate_, rate_, gradient_, u_;
+};
+
+}  // namespace fontana
