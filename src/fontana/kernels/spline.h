@@ -24,20 +24,27 @@ FN REAL kernel_gradient(const StepConstants c, REAL r) {
     return -scale * (6.0f * a * a - 24.0f * b * b) / max_f(q, 1.0e-6f);
 }
 
-// The share of W's integral beyond a plane at signed distance s H, s >= 0, and minus its derivative by s: the
-// polynomials that integrating W over the half-space gives.
-FN REAL half_space_share(const StepConstants c, REAL s) {
-    const REAL a = max_f(1.0f - s, 0.0f), a2 = a * a;
-    if (c.use_wendland) return a2 * a2 * a2 * (3.5f - 4.5f * a + 1.5f * a2);
-    const REAL b = max_f(0.5f - s, 0.0f), b2 = b * b;
-    return a2 * a2 * a * (1.6f - (6.4f / 6.0f) * a) - b2 * b2 * b * (3.2f - (25.6f / 6.0f) * b);
+// W seen from a plane: the integral of W over the plane at distance z H, times H; its derivative by z; and the integral
+// of it all beyond z, the share of W behind that plane. For z >= 0. Polynomials, from integrating W over discs.
+FN REAL plane_share(const StepConstants c, REAL z) {
+    const REAL a = max_f(1.0f - z, 0.0f), a2 = a * a;
+    if (c.use_wendland) return a2 * a2 * a * (21.0f - 31.5f * a + 12.0f * a2);
+    const REAL b = max_f(0.5f - z, 0.0f), b2 = b * b;
+    return a2 * a2 * (8.0f - 6.4f * a) - b2 * b2 * (16.0f - 25.6f * b);
 }
 
-FN REAL half_space_slope(const StepConstants c, REAL s) {
-    const REAL a = max_f(1.0f - s, 0.0f), a2 = a * a;
-    if (c.use_wendland) return a2 * a2 * a * (21.0f - 31.5f * a + 12.0f * a2);
-    const REAL b = max_f(0.5f - s, 0.0f), b2 = b * b;
-    return a2 * a2 * (8.0f - 6.4f * a) - b2 * b2 * (16.0f - 25.6f * b);
+FN REAL plane_slope(const StepConstants c, REAL z) {
+    const REAL a = max_f(1.0f - z, 0.0f), a2 = a * a;
+    if (c.use_wendland) return -a2 * a2 * (105.0f - 189.0f * a + 84.0f * a2);
+    const REAL b = max_f(0.5f - z, 0.0f), b2 = b * b;
+    return -32.0f * (a2 * a * (1.0f - a) - b2 * b * (2.0f - 4.0f * b));
+}
+
+FN REAL half_space_share(const StepConstants c, REAL z) {
+    const REAL a = max_f(1.0f - z, 0.0f), a2 = a * a;
+    if (c.use_wendland) return a2 * a2 * a2 * (3.5f - 4.5f * a + 1.5f * a2);
+    const REAL b = max_f(0.5f - z, 0.0f), b2 = b * b;
+    return a2 * a2 * a * (1.6f - (6.4f / 6.0f) * a) - b2 * b2 * b * (3.2f - (25.6f / 6.0f) * b);
 }
 
 #endif

@@ -19,7 +19,6 @@ typedef struct StepConstants {
     float poly6_gradient_scale;             // 945 / (32 pi H^9)
     float kernel_scale;                     // 1/m^3, of the spline (spline.h)
     float inverse_support_radius;           // 1/m
-    float wall_offset;                      // m: how far behind its surface a wall's fluid begins (walls.h)
     float inverse_rest_density;             // m^3/kg
     float inverse_dt;                       // 1/s
     float minimum_normal;                   // 1/m: below this the colour field's gradient is no surface

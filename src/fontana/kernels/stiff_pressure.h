@@ -26,19 +26,24 @@ KERNEL void predict_position(THREAD_ARG const StepConstants c, GLOBAL const floa
                                x.z + c.dt * (v.z - c.dt * g.z), x.w);
 }
 
-FN void store_correction(uint i, float delta, float relative, GLOBAL float* RESTRICT u,
+// delta is that of a full neighbourhood at rest; where particles are crowded it would overshoot, and half of 1 / D,
+// what relaxed Jacobi would take, holds it.
+FN void store_correction(const StepConstants c, uint i, float delta, float relative,
+                         GLOBAL const float4* RESTRICT factor, GLOBAL float* RESTRICT u,
                          GLOBAL float* RESTRICT residual) {
-    u[i] = max_f(0.0f, u[i] + delta * (relative - 1.0f));
+    const float gain = min_f(delta, 0.5f * factor[i].w) * c.inverse_dt * c.inverse_dt;
+    u[i] = max_f(0.0f, u[i] + gain * (relative - 1.0f));
     residual[i] = max_f(0.0f, relative - 1.0f);
 }
 
-// The relative density there and the correction u += delta (relative - 1), delta (m^2) for a full neighbourhood
+// The relative density there and the correction u += delta / dt^2 (relative - 1), delta (m^2) for a full neighbourhood
 // (Solenthaler and Pajarola 2009, eq. 8). The walls move too: their share at the predicted place is that of the present
 // surfaces. `residual` gets what is above rest density.
 KERNEL void correct_pressure(THREAD_ARG const StepConstants c, const float delta,
                              GLOBAL const float4* RESTRICT predicted, GLOBAL const uint* RESTRICT neighbor_count,
                              GLOBAL const uint* RESTRICT list, GLOBAL const ColliderConstants* RESTRICT collider,
-                             GLOBAL float* RESTRICT u, GLOBAL float* RESTRICT residual) {
+                             GLOBAL const float4* RESTRICT factor, GLOBAL float* RESTRICT u,
+                             GLOBAL float* RESTRICT residual) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
     const float4 x_i = predicted[i];
@@ -48,7 +53,7 @@ KERNEL void correct_pressure(THREAD_ARG const StepConstants c, const float delta
         const float4 x_j = predicted[neighbor(c, list, i, k)];
         relative += x_j.w * kernel_value(c, pair_of(x_i, x_j).r);
     }
-    store_correction(i, delta, relative, u, residual);
+    store_correction(c, i, delta, relative, factor, u, residual);
 }
 
 #endif

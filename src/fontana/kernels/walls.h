@@ -1,6 +1,10 @@
-// Walls that count as fluid at rest density. The volume behind a plane within the support has a closed form
-// (half_space_share), so a wall needs no boundary particles, has no bumps and costs no neighbours; spheres and
-// cylinders are taken as their tangent plane, exact as the radius grows over the support radius.
+// Walls that count as fluid at rest density: layers of it a spacing apart, the first half a spacing behind the surface,
+// as a lattice would go on. A layer's share of a particle's density is that of a plane (plane_share), in closed form:
+// no boundary particles, no bumps, no neighbours. Spheres and cylinders are taken as their tangent plane, which is
+// exact as the radius grows over the support radius.
+//
+// From half a spacing on the distance counts double, so that a particle that reaches the surface meets the first layer
+// face to face. Otherwise it could sit there, held by the collision alone, of which the pressure solve knows nothing.
 #ifndef FONTANA_WALLS_H
 #define FONTANA_WALLS_H
 
@@ -15,38 +19,58 @@ typedef struct WallTerm {
     float rate;
 } WallTerm;
 
-// The share as a function of the signed distance (m) from the surface into the fluid, over its whole range. The fluid
-// behind begins a little deeper (wall_offset), so that a lattice half a spacing from the surface has rest density.
-FN float wall_share(const StepConstants c, float distance) {
-    const float s = distance * c.inverse_support_radius;
-    return s >= 0.0f ? half_space_share(c, s) : 1.0f - half_space_share(c, -s);
+// Layers of the spacing H / 2 that a particle at `distance` (m, signed, into the fluid) sees; and the derivative by it.
+FN float wall_share(const StepConstants c, float distance, float thickness) {
+    const float spacing = 0.5f * c.support_radius, near = distance - 0.5f * spacing;
+    const float z = near < 0.0f ? distance + near : distance;
+    float share = 0.0f;
+    for (uint k = 0u; k < 3u; ++k) {
+        const float depth = ((float)k + 0.5f) * spacing, from = (z + depth) * c.inverse_support_radius;
+        if (depth < thickness) share += 0.5f * plane_share(c, from < 0.0f ? -from : from);
+    }
+    return share;
 }
 
-FN float wall_slope(const StepConstants c, float distance) {
-    const float s = distance * c.inverse_support_radius;
-    return half_space_slope(c, s >= 0.0f ? s : -s) * c.inverse_support_radius;
+FN float wall_slope(const StepConstants c, float distance, float thickness) {
+    const float spacing = 0.5f * c.support_radius, near = distance - 0.5f * spacing;
+    const float z = near < 0.0f ? distance + near : distance;
+    float slope = 0.0f;
+    for (uint k = 0u; k < 3u; ++k) {
+        const float depth = ((float)k + 0.5f) * spacing, from = (z + depth) * c.inverse_support_radius;
+        if (depth < thickness) slope += 0.5f * (from < 0.0f ? -plane_slope(c, -from) : plane_slope(c, from));
+    }
+    return slope * c.inverse_support_radius * (near < 0.0f ? 2.0f : 1.0f);
 }
 
-// One surface. A wall of finite thickness lacks what would be behind it; a cylinder's lacks what would be above its
-// rim.
+// The share of a cylinder's wall that stands at a height of `above` (m) over its rim: 1 far below, 0 far above.
+FN float rim_share(const StepConstants c, float above) {
+    const float z = above * c.inverse_support_radius;
+    return z >= 0.0f ? half_space_share(c, z) : 1.0f - half_space_share(c, -z);
+}
+
+FN float rim_slope(const StepConstants c, float above) {
+    const float z = above * c.inverse_support_radius;
+    return -plane_share(c, z >= 0.0f ? z : -z) * c.inverse_support_radius;
+}
+
+// One surface.
 FN WallTerm wall_of(const StepConstants c, ColliderConstants s, Motion m) {
     const Contact contact = surface_distance(s, m);
-    const float distance = c.wall_offset - contact.depth;
-    float share = wall_share(c, distance), slope = wall_slope(c, distance), rim = 1.0f, rim_slope = 0.0f;
-    if (s.thickness < 1.0e30f) {
-        share -= wall_share(c, distance + s.thickness);
-        slope -= wall_slope(c, distance + s.thickness);
+    float share = 0.0f, slope = 0.0f, rim = 1.0f, along_rim = 0.0f;
+    if (contact.depth < s.thickness && contact.depth > -c.support_radius) {
+        share = wall_share(c, -contact.depth, s.thickness);
+        slope = wall_slope(c, -contact.depth, s.thickness);
     }
     if (s.type >= 5u && s.cutoff < 1.0e30f) {
-        rim = wall_share(c, m.y - s.cutoff);
-        rim_slope = wall_slope(c, m.y - s.cutoff);
+        rim = rim_share(c, m.y - s.cutoff);
+        along_rim = share * rim_slope(c, m.y - s.cutoff);
     }
+    // The normal points into the fluid, along growing distance.
     WallTerm term;
     term.share = share * rim;
-    // The normal points into the fluid, along growing distance: the share falls that way.
-    term.gradient_x = -slope * rim * contact.nx;
-    term.gradient_y = -slope * rim * contact.ny - share * rim_slope;
-    term.gradient_z = -slope * rim * contact.nz;
+    term.gradient_x = slope * rim * contact.nx;
+    term.gradient_y = slope * rim * contact.ny + along_rim;
+    term.gradient_z = slope * rim * contact.nz;
     term.rate = term.gradient_x * s.velocity_x + term.gradient_y * s.velocity_y + term.gradient_z * s.velocity_z;
     return term;
 }

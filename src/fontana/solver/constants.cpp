@@ -59,29 +59,6 @@ double lattice_sum(const Parameters& p) {
     return 315.0 / (64.0 * k_pi * std::pow(support, 9)) * sum;
 }
 
-// m: a plane's share of the density of a lattice that begins half a spacing above it must be what the lattice lacks
-// there, its layers below. Found by bisection.
-double wall_offset(const Parameters& p, const StepConstants& c) {
-    const double spacing = p.fluid_particle_spacing, support = support_radius(p);
-    if (support > k_most_reach * spacing) return 0.0;
-    const int reach = static_cast<int>(std::ceil(support / spacing));
-    double below = 0.0;
-    for (int z = 1; z <= reach; ++z)
-        for (int y = -reach; y <= reach; ++y)
-            for (int x = -reach; x <= reach; ++x) {
-                const double r = spacing * std::sqrt(static_cast<double>(x * x + y * y + z * z));
-                below += r < support ? static_cast<double>(kernel_value(c, static_cast<float>(r))) : 0.0;
-            }
-    const double missing = below / lattice_sum(p);
-    double near = 0.0, far = support;
-    for (int k = 0; k < 60; ++k) {
-        const double middle = 0.5 * (near + far);
-        const double share = static_cast<double>(half_space_share(c, static_cast<float>(middle / support)));
-        (share > missing ? near : far) = middle;
-    }
-    return near - 0.5 * spacing;
-}
-
 }  // namespace
 
 double support_radius(const Parameters& p) {
@@ -132,7 +109,6 @@ fontana_derived derive(const Parameters& p) {
 StepConstants make_constants(const Parameters& p) {
     const double support = support_radius(p);
     StepConstants c = spline_constants(p);
-    c.wall_offset = static_cast<float>(wall_offset(p, c));
     c.support_radius_squared = c.support_radius * c.support_radius;
     c.rest_density = static_cast<float>(p.fluid_rest_density);
     c.pressure_constant = static_cast<float>(p.fluid_pressure_constant);

@@ -33,7 +33,7 @@ class Pcisph : public Method {
     void solve(Substep& s) {
         const std::size_t count = s.particles.count();
         const double tolerance = density_error_tolerance(s.parameters);
-        const auto delta = static_cast<float>(pcisph_delta(s.parameters) / (s.report.step.dt * s.report.step.dt));
+        const auto delta = static_cast<float>(pcisph_delta(s.parameters));
         operators_.clear_u(s);
         s.report.converged = false;
         for (std::uint32_t k = 1; k <= static_cast<std::uint32_t>(s.parameters.solver_max_iterations); ++k) {
@@ -43,7 +43,7 @@ class Pcisph : public Method {
                              *predicted_});
             backend_.launch(Kernel::correct_pressure, count,
                             {s.constants, delta, *predicted_, operators_.list().count(), operators_.list().list(),
-                             s.colliders.buffer(), operators_.u(), *residual_});
+                             s.colliders.buffer(), operators_.factor(), operators_.u(), *residual_});
             s.report.iterations = k;
             if (k >= k_least_iterations && mean_of(backend_, *residual_, count) <= tolerance) {
                 s.report.converged = true;
@@ -54,8 +54,8 @@ class Pcisph : public Method {
 
     void reserve(std::size_t particle_count) {
         if (predicted_ && predicted_->bytes() >= particle_count * 16) return;
-        predicted_ = backend_.allocate("predicted position", (particle_count + particle_count / 4) * 16);
         residual_ = backend_.allocate("residual", (particle_count + particle_count / 4) * 4);
+        predicted_ = backend_.allocate("predicted position", (particle_count + particle_count / 4) * 16);
     }
 
     Backend& backend_;

@@ -17,13 +17,15 @@ constexpr std::uint64_t k_most_entries = 0xffffffffu;
 
 void NeighborList::reserve(std::size_t particle_count) {
     if (list_ && reserved_ >= particle_count) return;
-    reserved_ = particle_count + particle_count / 4;
-    if (std::uint64_t{reserved_} * capacity_ > k_most_entries) reserved_ = particle_count;
-    if (std::uint64_t{reserved_} * capacity_ > k_most_entries)
+    std::size_t roomy = particle_count + particle_count / 4;
+    if (std::uint64_t{roomy} * capacity_ > k_most_entries) roomy = particle_count;
+    if (std::uint64_t{roomy} * capacity_ > k_most_entries)
         fail(FONTANA_OUT_OF_MEMORY, "neighbour lists of " + std::to_string(particle_count) + " particles with up to " +
                                         std::to_string(capacity_) + " neighbours each cannot be indexed");
-    count_ = backend_.allocate("neighbour count", reserved_ * 4);
-    list_ = backend_.allocate("neighbour list", reserved_ * capacity_ * 4);
+    list_.reset();  // the old one first, so that the two never stand side by side; there is none if memory runs out
+    count_ = backend_.allocate("neighbour count", roomy * 4);
+    list_ = backend_.allocate("neighbour list", roomy * capacity_ * 4);
+    reserved_ = roomy;
 }
 
 // A processor walks one particle's list from end to end; a GPU's threads walk side by side.

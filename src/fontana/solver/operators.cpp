@@ -4,13 +4,14 @@ namespace fontana {
 
 void Operators::reserve(std::size_t particle_count) {
     if (u_ && reserved_ >= particle_count) return;
-    reserved_ = particle_count + particle_count / 4;
-    volume_position_ = backend_.allocate("volume position", reserved_ * 16);
-    factor_ = backend_.allocate("factor", reserved_ * 16);
-    wall_rate_ = backend_.allocate("wall rate", reserved_ * 4);
-    rate_ = backend_.allocate("rate", reserved_ * 4);
-    gradient_ = backend_.allocate("pressure gradient", reserved_ * 16);
-    u_ = backend_.allocate("pressure", reserved_ * 4);
+    const std::size_t roomy = particle_count + particle_count / 4;
+    volume_position_ = backend_.allocate("volume position", roomy * 16);
+    factor_ = backend_.allocate("factor", roomy * 16);
+    wall_rate_ = backend_.allocate("wall rate", roomy * 4);
+    rate_ = backend_.allocate("rate", roomy * 4);
+    gradient_ = backend_.allocate("pressure gradient", roomy * 16);
+    u_ = backend_.allocate("pressure", roomy * 4);
+    reserved_ = roomy;  // only now: memory may run out halfway
 }
 
 std::uint64_t Operators::bytes(std::uint64_t particle_count) {

@@ -17,7 +17,8 @@ struct TimeStep {
 //   acceleration     0.25 sqrt(H / acceleration)                     (Monaghan 1992)
 //   acoustic         0.4 d / c, c^2 the pressure constant
 //   viscosity        0.1 d^2 density / viscosity
-//   convergence      0.1 s/m d, dfsph and pcisph: longer steps change the neighbourhood more than a solve can follow
+//   convergence      0.1 s/m d for dfsph, 0.05 s/m d for pcisph: longer steps change the neighbourhood more than the
+//                    solve can follow
 //   surface_tension  0.4 sqrt(density d^3 / (2 pi sigma))
 // with H the support radius and d = H / 2.
 fontana_time_step_limits time_step_limits(const Parameters& parameters, double speed, double acceleration);

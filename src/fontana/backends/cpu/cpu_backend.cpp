@@ -25,9 +25,8 @@ constexpr std::size_t k_grain = 512;
 class CpuBuffer : public Buffer {
  public:
     CpuBuffer(const std::string& name, std::size_t bytes)
-        : Buffer(name, bytes),
-          data_(static_cast<char*>(::operator new(std::max<std::size_t>(bytes, 16), k_alignment))) {
-        std::fill_n(data_, std::max<std::size_t>(bytes, 16), '\0');
+        : Buffer(name, bytes), data_(static_cast<char*>(::operator new(bytes + k_slack, k_alignment))) {
+        std::fill_n(data_, bytes + k_slack, '\0');
     }
     ~CpuBuffer() override { ::operator delete(data_, k_alignment); }
     char* data() const { return data_; }

@@ -200,8 +200,8 @@ void laplacian_viscosity(uint begin, uint end, const StepConstants& c, const flo
 }
 
 void correct_pressure(uint begin, uint end, const StepConstants& c, float delta, const float4* predicted,
-                      const uint* neighbor_count, const uint* list, const ColliderConstants* collider, float* u,
-                      float* residual) {
+                      const uint* neighbor_count, const uint* list, const ColliderConstants* collider,
+                      const float4* factor, float* u, float* residual) {
     for (uint i = begin; i < end; ++i) {
         Vec8 relative{};
         for_list(c, i, neighbor_count, list, predicted, [&](const uint* j, const Vec8x4& x_j, const Pair& pair) {
@@ -209,7 +209,7 @@ void correct_pressure(uint begin, uint end, const StepConstants& c, float delta,
         });
         const float4 x_i = predicted[i];
         const float own = x_i.w * ::kernel_value(c, 0.0f) + walls_at(c, collider, x_i).share;
-        store_correction(i, delta, own + sum_of(relative), u, residual);
+        store_correction(c, i, delta, own + sum_of(relative), factor, u, residual);
     }
 }
 
