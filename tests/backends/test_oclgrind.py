@@ -15,7 +15,11 @@ import pytest
 
 HERE = Path(__file__).parent
 SOURCE = HERE.parents[1] / "src" / "fontana"
+SMALL_RUN = HERE / "opencl_faults" / "small_run.py"
 LIBRARY = "liboclgrind-rt.so"
+# Inlining a function with restrict pointers leaves a mark in LLVM's code that this simulator does not know.
+WATCH = ("--data-races", "--check-api", "--build-options", "-cl-opt-disable")
+METHODS = ("mueller", "wcsph", "pcisph", "dfsph")
 
 
 def find_oclgrind():
@@ -41,16 +45,24 @@ def kernels_of_the_library():
     return {*listed, *(f"sort: {name.replace('_', ' ')}" for name in sort)}
 
 
-def test_kernels_have_no_race_and_use_opencl_as_specified(tmp_path):
+def run_simulator(method, log):
+    """The names of all launches. What the simulator reports goes to `log`."""
     program, library = find_oclgrind()
-    log = tmp_path / "reports"
     environment = os.environ | {"FONTANA_OPENCL_LIBRARY": str(library), "FONTANA_KERNEL_CACHE": "off"}
     environment.pop("OPENCL_LAYERS", None)
-    command = [program, "--data-races", "--check-api", "--log", log, sys.executable]
-    result = subprocess.run(
-        [*command, HERE / "opencl_faults" / "small_run.py"], env=environment, capture_output=True, text=True
-    )
+    command = [program, *WATCH, "--log", log, sys.executable, SMALL_RUN, f"fluid.method={method}"]
+    result = subprocess.run(command, env=environment, capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
-    assert kernels_of_the_library() <= set(json.loads(result.stdout)["launches"])
-    reports = log.read_text() if log.exists() else ""
-    assert reports + result.stderr == ""
+    assert result.stderr == ""
+    run = json.loads(result.stdout)
+    assert "launches" in run, run
+    return set(run["launches"])
+
+
+def test_kernels_have_no_race_and_use_opencl_as_specified(tmp_path):
+    launches = set()
+    for method in METHODS:
+        log = tmp_path / method
+        launches |= run_simulator(method, log)
+        assert not log.exists() or log.read_text() == ""
+    assert kernels_of_the_library() <= launches, "a kernel that no method of this test launches was not watched"

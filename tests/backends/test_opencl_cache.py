@@ -45,7 +45,7 @@ def test_a_cached_program_gives_the_same_results(small_run):
 
 def test_strict_and_fast_programs_have_different_entries(small_run):
     first = only_entry(small_run).name
-    small_run.lines("strict")
+    small_run.lines("solver.precision=strict")
     assert len({entry.name for entry in small_run.cache.glob("*.bin")} - {first}) == 1
 
 

@@ -47,13 +47,13 @@ def clear(folder):
         entry.unlink()
 
 
-def sweep(small_run, function, error):
+def sweep(small_run, function, error, *settings):
     """The runs that raised an error. The others must have the result of a run in which nothing fails."""
     code, name = error
-    expected = small_run.lines()[-1]
+    expected = small_run.lines(*settings)[-1]
     if function in COMPILING:
         clear(small_run.cache)
-    runs = small_run.lines("sweep", small_run.layer, str(code), function)
+    runs = small_run.lines("sweep", small_run.layer, str(code), function, *settings)
     assert len(runs) > 1, f"no run calls {function}"
     assert runs[-1] == expected
     failed = [run for run in runs if "error" in run]
@@ -89,6 +89,15 @@ def test_a_device_that_fails_in_mid_run_is_lost(small_run, function):
 def test_a_device_without_memory_says_so(small_run, function):
     failed = sweep(small_run, function, OUT_OF_RESOURCES)
     assert {run["error"] for run in failed} == {"OutOfMemory"}
+
+
+@pytest.mark.parametrize("method", ["dfsph", "pcisph", "wcsph"])
+@pytest.mark.parametrize("function", ["clCreateBuffer", "clEnqueueReadBuffer"])
+@pytest.mark.parametrize(("error", "kind"), [(INVALID_QUEUE, "DeviceLost"), (OUT_OF_RESOURCES, "OutOfMemory")])
+def test_the_other_methods_too(small_run, method, function, error, kind):
+    """They have more buffers, and read sums from the device to decide when to stop."""
+    failed = sweep(small_run, function, error, f"fluid.method={method}")
+    assert {run["error"] for run in failed} == {kind}
 
 
 @pytest.mark.parametrize("function", DISPENSABLE)

@@ -1,9 +1,9 @@
-"""A small simulation through OpenCL that uses every kernel: the program the tests of the backend run in a process.
+"""A small simulation through OpenCL: the program the tests of the backend run in a process.
 
-    small_run.py                             runs it once
-    small_run.py strict                      runs it once in strict arithmetic
+    small_run.py NAME=VALUE...               runs it once, with these parameters beside those below
     small_run.py calls LAYER FUNCTION...     runs it once for each function, and counts the calls of that function
-    small_run.py sweep LAYER CODE FUNCTION   lets the first call of FUNCTION fail with CODE, then the second, and so on
+    small_run.py sweep LAYER CODE FUNCTION NAME=VALUE...
+                                             lets the first call of FUNCTION fail with CODE, then the second, and so on
                                              until a run has no call left to fail
 
 Each run prints one line of JSON: {"digest": of all results, "launches": names}, or {"error": class, "sentence": text}.
@@ -21,24 +21,25 @@ import fontana
 from fontana import _core
 
 
-def small_run(precision="fast"):
-    """The digest of all results, and what was launched. 43 particles for one frame of two substeps, 300 more for the
+def small_run(parameters):
+    """The digest of all results, and what was launched. 43 particles for one frame of two substeps, 173 more for the
     next, whose substeps are chosen from the motion."""
     simulation = _core.Simulation()
     for name, value in {
         "solver.backend": "opencl",
-        "solver.precision": precision,
         "solver.profile": True,
         "fluid.surface_tension": 0.07,
         "forces.wind": (1.0, 0.0, 0.0),
         "forces.wind_coupling": 0.5,
         "time.frame_rate": 1000.0,
         "time.substeps": 2,
+        "solver.max_iterations": 6,  # enough to launch all there is
+        **parameters,
     }.items():
         simulation.set(name, value)
     simulation.add_collider("plane_y")
     simulation.add_collider("sphere_inside", radius=1.0)
-    lattice = np.stack(np.meshgrid(*3 * [np.arange(7)], indexing="ij"), axis=-1).reshape(-1, 3)
+    lattice = np.stack(np.meshgrid(*3 * [np.arange(6)], indexing="ij"), axis=-1).reshape(-1, 3)
     jitter = np.random.default_rng(1).uniform(-0.2, 0.2, lattice.shape)
     position = ((lattice + jitter) * 0.02).astype(np.float32)
     return digest_after_two_frames(simulation, position[:43], position[43:])
@@ -66,42 +67,47 @@ def digest_after_two_frames(simulation, early_position, late_position):
         raise AssertionError(f"a lost device went on, after: {first}") from first
 
 
-def report(run):
+def report(parameters):
     try:
-        line = run()
+        line = small_run(parameters)
     except fontana.FontanaError as error:
         line = {"error": type(error).__name__, "sentence": str(error)}
     print(json.dumps(line), flush=True)
 
 
-def sweep(layer, code, function):
+def count(layer, *functions):
+    for function in functions:
+        layer.arm_fault(function.encode(), 0, 0)
+        small_run({})
+        print(json.dumps({"function": function, "calls": layer.count_calls()}), flush=True)
+
+
+def sweep(layer, code, function, *settings):
     for call in itertools.count(1):
         layer.arm_fault(function.encode(), call, int(code))
-        report(small_run)
+        report(parsed(settings))
         if layer.count_calls() < call:
             return
 
 
-def count(layer, functions):
-    for function in functions:
-        layer.arm_fault(function.encode(), 0, 0)
-        small_run()
-        print(json.dumps({"function": function, "calls": layer.count_calls()}), flush=True)
+def parsed(settings):
+    return dict(setting.split("=") for setting in settings)
+
+
+def open_layer(path):
+    fontana.devices()  # has the loader load the layer, so that this finds that one and does not load another
+    layer = ctypes.CDLL(path)
+    layer.count_calls.restype = ctypes.c_long
+    layer.arm_fault.argtypes = (ctypes.c_char_p, ctypes.c_long, ctypes.c_int)
+    return layer
 
 
 def main():
-    mode, *arguments = sys.argv[1:] or ["once"]
-    if mode in ("once", "strict"):
-        report(lambda: small_run("strict" if mode == "strict" else "fast"))
-        return
-    fontana.devices()  # has the loader load the layer, so that this finds it and does not load another one
-    layer = ctypes.CDLL(arguments[0])
-    layer.count_calls.restype = ctypes.c_long
-    layer.arm_fault.argtypes = (ctypes.c_char_p, ctypes.c_long, ctypes.c_int)
-    if mode == "sweep":
-        sweep(layer, *arguments[1:])
+    mode, *arguments = sys.argv[1:] or [""]
+    if mode in ("calls", "sweep"):
+        (count if mode == "calls" else sweep)(open_layer(arguments[0]), *arguments[1:])
     else:
-        count(layer, arguments[1:])
+        report(parsed(sys.argv[1:]))
 
 
 if __name__ == "__main__":
