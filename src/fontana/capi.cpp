@@ -74,27 +74,26 @@ fontana_device view_of(const fontana::DeviceInfo& device) {
             device.compute_units,   device.is_gpu ? 1 : 0, device.available ? 1 : 0, device.reason.c_str()};
 }
 
-constexpr double k_pi = 3.14159265358979323846;
-
 // A device function times the constant that the solver takes out of the sum.
 double smoothing(const std::string& kernel, const std::string& quantity, double r, double h) {
     const float rf = static_cast<float>(r), hf = static_cast<float>(h), r2 = rf * rf, h2 = hf * hf;
-    const double h3 = h * h * h, h6 = h3 * h3, h9 = h6 * h3;
-    const double of_poly6 = 945.0 / (32.0 * k_pi * h9);
+    const fontana::SmoothingScales scale = fontana::smoothing_scales(h);
     const struct {
         const char *kernel, *quantity;
-        double value;
+        double scale;
+        float value;
     } table[] = {
-        {"poly6", "value", 315.0 / (64.0 * k_pi * h9) * static_cast<double>(poly6(r2, h2))},
-        {"poly6", "gradient", -of_poly6 * r * static_cast<double>(poly6_gradient(r2, h2))},
-        {"poly6", "laplacian", -of_poly6 * static_cast<double>(poly6_laplacian(r2, h2))},
-        {"spiky", "value", 15.0 / (k_pi * h6) * static_cast<double>(spiky(rf, hf))},
-        {"spiky", "gradient", -45.0 / (k_pi * h6) * static_cast<double>(spiky_gradient(rf, hf))},
-        {"viscosity", "value", 15.0 / (2.0 * k_pi * h3) * static_cast<double>(viscosity_kernel(rf, hf))},
-        {"viscosity", "laplacian", 45.0 / (k_pi * h6) * static_cast<double>(viscosity_laplacian(rf, hf))},
+        {"poly6", "value", scale.poly6, poly6(r2, h2)},
+        {"poly6", "gradient", -scale.poly6_derivative * r, poly6_gradient(r2, h2)},
+        {"poly6", "laplacian", -scale.poly6_derivative, poly6_laplacian(r2, h2)},
+        {"spiky", "value", scale.spiky, spiky(rf, hf)},
+        {"spiky", "gradient", -scale.spiky_gradient, spiky_gradient(rf, hf)},
+        {"viscosity", "value", scale.viscosity, viscosity_kernel(rf, hf)},
+        {"viscosity", "laplacian", scale.viscosity_laplacian, viscosity_laplacian(rf, hf)},
     };
     for (const auto& row : table)
-        if (kernel == row.kernel && quantity == row.quantity) return r < h ? row.value : 0.0;
+        if (kernel == row.kernel && quantity == row.quantity)
+            return r < h ? row.scale * static_cast<double>(row.value) : 0.0;
     fontana::fail(FONTANA_BAD_INPUT, "no " + quantity + " of a smoothing kernel '" + kernel +
                                          "': expected poly6 (value, gradient, laplacian), spiky (value, gradient) or "
                                          "viscosity (value, laplacian)");

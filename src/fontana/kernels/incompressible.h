@@ -18,8 +18,10 @@ FN void store_density(const StepConstants c, uint i, float volume, float relativ
                       GLOBAL float* RESTRICT wall_rate) {
     const float x = s.x + walls.gradient_x, y = s.y + walls.gradient_y, z = s.z + walls.gradient_z;
     const float diagonal = x * x + y * y + z * z + volume * squares;
-    // Next to nobody the system is singular; such a particle feels no pressure.
-    const float inverse = diagonal * c.support_radius_squared > 4.0e-4f ? 1.0f / diagonal : 0.0f;
+    // Next to nobody the system is singular; and a particle pinched between surfaces has nowhere to go, so that no
+    // pressure would ever be enough. Either feels none.
+    const bool is_free = diagonal * c.support_radius_squared > 4.0e-4f && walls.share < 0.9f;
+    const float inverse = is_free ? 1.0f / diagonal : 0.0f;
     density_out[i] = relative * c.rest_density;
     factor[i] = MAKE_FLOAT4(x, y, z, inverse);
     wall_rate[i] = walls.rate;

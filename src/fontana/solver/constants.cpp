@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/smoothing.h"
 #include "kernels/spline.h"
 
 namespace fontana {
@@ -54,12 +55,20 @@ double lattice_sum(const Parameters& p) {
                     [&](double r) { sum += static_cast<double>(kernel_value(c, static_cast<float>(r))); });
         return sum;
     }
-    sum = std::pow(support, 6);
-    for_lattice(p.fluid_particle_spacing, support, [&](double r) { sum += std::pow(support * support - r * r, 3); });
-    return 315.0 / (64.0 * k_pi * std::pow(support, 9)) * sum;
+    const auto h2 = static_cast<float>(support * support);
+    sum = static_cast<double>(poly6(0.0f, h2));
+    for_lattice(p.fluid_particle_spacing, support,
+                [&](double r) { sum += static_cast<double>(poly6(static_cast<float>(r * r), h2)); });
+    return smoothing_scales(support).poly6 * sum;
 }
 
 }  // namespace
+
+SmoothingScales smoothing_scales(double h) {
+    const double h3 = h * h * h, h6 = h3 * h3, h9 = h6 * h3;
+    return {315.0 / (64.0 * k_pi * h9), 945.0 / (32.0 * k_pi * h9), 15.0 / (k_pi * h6),
+            45.0 / (k_pi * h6),         15.0 / (2.0 * k_pi * h3),   45.0 / (k_pi * h6)};
+}
 
 double support_radius(const Parameters& p) {
     return p.fluid_support_radius > 0.0 ? p.fluid_support_radius : 2.0 * p.fluid_particle_spacing;
@@ -101,7 +110,8 @@ fontana_derived derive(const Parameters& p) {
     derived.kinematic_viscosity = p.fluid_viscosity / p.fluid_rest_density;
     derived.speed_of_sound = std::sqrt(p.fluid_pressure_constant);
     derived.frame_duration = frame_duration(p);
-    const double own_value = uses_spline(p) ? spline_scale(p, support) : 315.0 / (64.0 * k_pi * std::pow(support, 3));
+    const double own_value =
+        uses_spline(p) ? spline_scale(p, support) : smoothing_scales(support).poly6 * std::pow(support, 6);
     derived.self_density = derived.particle_mass * own_value;
     return derived;
 }
@@ -115,10 +125,11 @@ StepConstants make_constants(const Parameters& p) {
     c.minimum_pressure = p.fluid_negative_pressure ? -INFINITY : 0.0f;
     c.viscosity = static_cast<float>(p.fluid_viscosity);
     c.surface_tension = static_cast<float>(p.fluid_surface_tension);
-    c.poly6_scale = static_cast<float>(315.0 / (64.0 * k_pi * std::pow(support, 9)));
-    c.spiky_gradient_scale = static_cast<float>(45.0 / (k_pi * std::pow(support, 6)));
-    c.viscosity_laplacian_scale = c.spiky_gradient_scale;
-    c.poly6_gradient_scale = static_cast<float>(945.0 / (32.0 * k_pi * std::pow(support, 9)));
+    const SmoothingScales scales = smoothing_scales(support);
+    c.poly6_scale = static_cast<float>(scales.poly6);
+    c.spiky_gradient_scale = static_cast<float>(scales.spiky_gradient);
+    c.viscosity_laplacian_scale = static_cast<float>(scales.viscosity_laplacian);
+    c.poly6_gradient_scale = static_cast<float>(scales.poly6_derivative);
     // Mueller et al. leave the threshold open. On a flat surface |n| is about 1.1 / H; well inside, noise of a few
     // hundredths of it.
     c.minimum_normal = static_cast<float>(0.2 / support);

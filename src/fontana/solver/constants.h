@@ -7,6 +7,14 @@
 
 namespace fontana {
 
+// What each smoothing kernel of eqs. 2.14 to 2.16 leaves to its caller (kernels/smoothing.h).
+struct SmoothingScales {
+    double poly6, poly6_derivative;  // 315 / (64 pi H^9) and 945 / (32 pi H^9): of W, and of its gradient and Laplacian
+    double spiky, spiky_gradient;    // 15 / (pi H^6) and 45 / (pi H^6)
+    double viscosity, viscosity_laplacian;  // 15 / (2 pi H^3) and 45 / (pi H^6)
+};
+SmoothingScales smoothing_scales(double support_radius);
+
 // m. Given, or twice the particle spacing.
 double support_radius(const Parameters& parameters);
 // m. Half the support radius: the length every limit of the time step is made of.
