@@ -22,6 +22,7 @@ unit: .venv/ready
 
 sanitize: .venv/ready
 	cmake --preset asan --log-level=WARNING && cmake --build --preset asan -j 2 && ctest --preset asan
+	cmake --preset tsan --log-level=WARNING && cmake --build --preset tsan -j 2 && ctest --preset tsan
 
 lint: .venv/ready
 	pip install --quiet 'ruff==0.17.6' 'clang-format==23.1.5'

@@ -1,5 +1,5 @@
-/* Random sequences of calls, each with arguments that are mostly wrong somewhere: no call may crash, hang, end without a
- * status, fail without a sentence, or find a defect in the library (FONTANA_INTERNAL).
+/* Random sequences of calls, each with arguments that are mostly wrong somewhere: no call may crash, hang, end without
+ * a status, fail without a sentence, or find a defect in the library (FONTANA_INTERNAL).
  *
  *   api_fuzz SEED COUNT FOLDER    runs the sequences SEED to SEED + COUNT - 1; a failure prints the one to run alone
  *
@@ -38,8 +38,8 @@ static size_t below(Fuzzer* f, size_t bound) { return (size_t)(random_bits(f) % 
 #define MAYBE(f, pointer) (below(f, 12) == 0 ? NULL : (pointer))
 
 static double any_number(Fuzzer* f) {
-    static const double special[] = {0.0,    -0.0, 1.0,  -1.0,  0.5,  2.0,   3.0,      1e-3,     0.02,     100.0,
-                                     1e-320, 1e9,  1e38, 1e300, -1e9, -1e38, INFINITY, -INFINITY, NAN,     4294967296.0};
+    static const double special[] = {0.0,    -0.0, 1.0,  -1.0,  0.5,  2.0,   3.0,      1e-3,      0.02, 100.0,
+                                     1e-320, 1e9,  1e38, 1e300, -1e9, -1e38, INFINITY, -INFINITY, NAN,  4294967296.0};
     if (below(f, 3) != 0) return ONE_OF(f, special);
     return (double)(int64_t)random_bits(f) * 0x1p-62;
 }
@@ -51,7 +51,8 @@ static float any_float(Fuzzer* f) {
 }
 
 static size_t any_size(Fuzzer* f) {
-    static const size_t special[] = {0, 1, 2, 3, 4, 12, 63, 64, 65, 1000, SIZE_MAX, SIZE_MAX / 2, SIZE_MAX / 3, SIZE_MAX / 12};
+    static const size_t special[] = {
+        0, 1, 2, 3, 4, 12, 63, 64, 65, 1000, SIZE_MAX, SIZE_MAX / 2, SIZE_MAX / 3, SIZE_MAX / 12};
     return ONE_OF(f, special);
 }
 
@@ -61,8 +62,9 @@ static int64_t any_frame(Fuzzer* f) {
 }
 
 static const char* any_name(Fuzzer* f) {
-    static const char* const other[] = {"",          "position", "fluid", "fluid.viscosity ", "Fluid.viscosity", "a\nb",
-                                        "%s%n%1000d", "\xff\xfe",  "poly6", "solver.backend",   "thesis",          "density"};
+    static const char* const other[] = {
+        "",           "position", "fluid", "fluid.viscosity ", "Fluid.viscosity", "a\nb",
+        "%s%n%1000d", "\xff\xfe", "poly6", "solver.backend",   "thesis",          "density"};
     if (below(f, 4) == 0) return ONE_OF(f, other);
     fontana_parameter row;
     fontana_parameter_info(below(f, fontana_parameter_count()), &row);
@@ -70,13 +72,15 @@ static const char* any_name(Fuzzer* f) {
 }
 
 static const char* any_text(Fuzzer* f) {
-    static const char* const texts[] = {"cpu", "grid", "all-pairs", "fast", "strict", "mueller", "thesis", "", "gird", "a\nb"};
+    static const char* const texts[] = {"cpu",   "grid",   "all-pairs", "fast",   "strict",   "mueller",
+                                        "wcsph", "pcisph", "dfsph",     "jacobi", "wendland", "anderson",
+                                        "final", "custom", "thesis",    "",       "mullr",    "a\nb"};
     return ONE_OF(f, texts);
 }
 
 static const char* any_path(Fuzzer* f) {
     static _Thread_local char path[4096];
-    static const char* const names[] = {"a", "b", "a.previous", "b.bgeo", "missing/file", "", "."};
+    static const char* const names[] = {"a", "a", "a", "a", "a.previous", "b", "b.bgeo", "missing/file", "", "."};
     snprintf(path, sizeof path, "%s/%s", f->folder, ONE_OF(f, names));
     return path;
 }
@@ -99,7 +103,12 @@ static void expect_status(Fuzzer* f, const char* call, fontana_status status) {
 }
 #define CALL(f, call, ...) expect_status(f, #call, fontana_##call(__VA_ARGS__))
 
-static fontana_simulation* any_handle(Fuzzer* f) { return f->handles[below(f, handle_count)]; }
+/* Null now and then. */
+static fontana_simulation* any_handle(Fuzzer* f) {
+    fontana_simulation* handle = NULL;
+    for (int attempt = 0; !handle && attempt < 3; ++attempt) handle = f->handles[below(f, handle_count)];
+    return handle;
+}
 
 /* ---- the calls ------------------------------------------------------------------------------------------------ */
 
@@ -121,10 +130,11 @@ static void destroy(Fuzzer* f) {
     f->handles[k] = NULL;
 }
 
-/* A number of particles, substeps or threads that is allowed, but takes for ever or all of the machine. */
+/* A number of particles, substeps, iterations or threads that is allowed, but takes for ever or all of the machine. */
 static int is_merely_large(const char* name, double value) {
     if (strcmp(name, "fluid.particle_spacing") == 0) return value > 0.0 && value < 0.01;
     if (strcmp(name, "time.simulation_scale") == 0) return value > 1.0 && value < 1e5;
+    if (strcmp(name, "solver.max_iterations") == 0) return value > most_substeps;
     if (strcmp(name, "time.substeps") == 0 || strcmp(name, "time.max_substeps") == 0) return value > most_substeps;
     return strcmp(name, "solver.threads") == 0 && (value > most_threads || value == 0.0);
 }
@@ -137,8 +147,11 @@ static void set_number(Fuzzer* f) {
     CALL(f, set_number, any_handle(f), MAYBE(f, name), MAYBE(f, values), ONE_OF(f, counts));
 }
 
+/* A method and another word: most pairs of names and words fit nowhere. */
 static void set_text(Fuzzer* f) {
-    const char *name = any_name(f), *text = any_text(f);
+    static const char* const methods[] = {"mueller", "wcsph", "pcisph", "dfsph"};
+    const char *name = any_name(f), *text = any_text(f), *method = ONE_OF(f, methods);
+    CALL(f, set_text, any_handle(f), "fluid.method", method);
     CALL(f, set_text, any_handle(f), MAYBE(f, name), MAYBE(f, text));
 }
 
@@ -268,15 +281,9 @@ static int stop_sometimes(void* user, double frame_fraction) {
 }
 
 static void step(Fuzzer* f) {
-    const size_t k = below(f, handle_count);
-    fontana_simulation* s = f->handles[k];
+    fontana_simulation* s = any_handle(f);
     uint64_t due = 0;
-    const int64_t next = fontana_frame(s) + 1;
-    if (s && fontana_emitted_by(s, next, &due) == FONTANA_OK && due > most_particles) {
-        fontana_destroy(s); /* merely large from here on */
-        f->handles[k] = NULL;
-        return;
-    }
+    if (s && fontana_emitted_by(s, fontana_frame(s) + 1, &due) == FONTANA_OK && due > most_particles) return;
     fontana_frame_report report;
     CALL(f, set_progress, s, below(f, 2) ? stop_sometimes : NULL, f);
     CALL(f, step_frame, s, MAYBE(f, &report));
@@ -288,11 +295,21 @@ static void files(Fuzzer* f) {
     uint64_t count = 0;
     char tag[8];
     switch (below(f, 5)) {
-        case 0: CALL(f, save_checkpoint, s, MAYBE(f, any_path(f)), MAYBE(f, any_text(f))); break;
-        case 1: CALL(f, load_checkpoint, s, MAYBE(f, any_path(f))); break;
-        case 2: CALL(f, checkpoint_info, MAYBE(f, any_path(f)), MAYBE(f, &frame), &count, MAYBE(f, tag), below(f, 9)); break;
-        case 3: CALL(f, write_bgeo, s, MAYBE(f, any_path(f))); break;
-        default: CALL(f, publish_file, MAYBE(f, any_path(f)), MAYBE(f, "FONTANA"), below(f, 9), &count); break;
+        case 0:
+            CALL(f, save_checkpoint, s, MAYBE(f, any_path(f)), MAYBE(f, any_text(f)));
+            break;
+        case 1:
+            CALL(f, load_checkpoint, s, MAYBE(f, any_path(f)));
+            break;
+        case 2:
+            CALL(f, checkpoint_info, MAYBE(f, any_path(f)), MAYBE(f, &frame), &count, MAYBE(f, tag), below(f, 9));
+            break;
+        case 3:
+            CALL(f, write_bgeo, s, MAYBE(f, any_path(f)));
+            break;
+        default:
+            CALL(f, publish_file, MAYBE(f, any_path(f)), MAYBE(f, "FONTANA"), below(f, 9), &count);
+            break;
     }
 }
 
@@ -307,7 +324,8 @@ static void device(Fuzzer* f) {
 
 /* What earlier sequences left would make this one another. */
 static void remove_files(const Fuzzer* f) {
-    static const char* const names[] = {"a", "b", "a.previous", "a.previous.previous", "b.previous", "b.bgeo", "b.bgeo.previous"};
+    static const char* const names[] = {"a",          "b",      "a.previous",     "a.previous.previous",
+                                        "b.previous", "b.bgeo", "b.bgeo.previous"};
     char path[4096];
     for (size_t k = 0; k < sizeof names / sizeof names[0]; ++k) {
         snprintf(path, sizeof path, "%s/%s", f->folder, names[k]);
@@ -318,9 +336,12 @@ static void remove_files(const Fuzzer* f) {
 static void run_sequence(Fuzzer* f) {
     remove_files(f);
     static void (*const calls[])(Fuzzer*) = {
-        create,     create,        destroy,       set_number,      set_number, set_number, set_text, read_parameters,
-        step,       step,          step,          step,            files,      device,     estimate, read_attributes,
-        change_keys, add_particles, add_particles, change_colliders, set_force,  add_emitter, apply_preset,
+        create,      create,        destroy,       set_number,
+        set_number,  set_number,    set_text,      read_parameters,
+        step,        step,          step,          files,
+        files,       device,        estimate,      read_attributes,
+        change_keys, add_particles, add_particles, change_colliders,
+        set_force,   add_emitter,   apply_preset,
     };
     create(f);
     const size_t length = 1 + below(f, longest_sequence);

@@ -9,6 +9,7 @@
 
 atomic_int failed_checks;
 const char* test_folder;
+const char* const methods[method_count] = {"dfsph", "pcisph", "wcsph", "mueller"};
 
 static int is_one_sentence(const char* text) {
     if (!*text) return 0;
@@ -73,6 +74,12 @@ fontana_simulation* make_fountain(int threads) {
     jet.jitter = 0.1;
     OK(fontana_add_emitter(simulation, &jet, NULL));
     add_block(simulation, 4);
+    return simulation;
+}
+
+fontana_simulation* make_fountain_by(const char* method, int threads) {
+    fontana_simulation* simulation = make_fountain(threads);
+    OK(fontana_set_text(simulation, "fluid.method", method));
     return simulation;
 }
 

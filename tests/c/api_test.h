@@ -31,12 +31,17 @@ void check_status(fontana_status status, fontana_status expected, const char* pa
 const char* path_of(const char* name);
 
 void set_number(fontana_simulation* simulation, const char* name, double value);
+/* Every choice of fluid.method. */
+enum { method_count = 4 };
+extern const char* const methods[method_count];
 /* A floor, frames of 1/240 s, no particles. */
 fontana_simulation* make_scene(int threads);
 /* side^3 particles somewhat off a lattice, so that no two are alike. */
 void add_block(fontana_simulation* simulation, int side);
 /* make_scene with a block, and a jet that runs from the first frame on. */
 fontana_simulation* make_fountain(int threads);
+/* The same by another method than the default. */
+fontana_simulation* make_fountain_by(const char* method, int threads);
 void step_frames(fontana_simulation* simulation, int count);
 
 /* Of every attribute of every particle and of the number of frames: equal states have equal hashes. */

@@ -86,7 +86,7 @@ static void* fail_in_own_words(void* number) {
 }
 
 static void* run_fountain(void* hash) {
-    fontana_simulation* simulation = make_fountain(3);
+    fontana_simulation* simulation = make_fountain_by("dfsph", 3);
     add_block(simulation, 11); /* more than one piece for the threads of the backend */
     step_frames(simulation, 2);
     *(uint64_t*)hash = state_hash(simulation);

@@ -20,8 +20,8 @@ static void fail(const char* what) {
 }
 
 /* POSIX has no conversion from dlsym's object pointer to a function pointer but this one. */
-#define FIND(function)                      \
-    __typeof__(&fontana_##function) function; \
+#define FIND(function)                                           \
+    __typeof__(&fontana_##function) function;                    \
     *(void**)(&function) = dlsym(library, "fontana_" #function); \
     if (!function) fail("fontana_" #function " is missing")
 

@@ -31,12 +31,6 @@ def io_test(tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def io_test_sanitized(tmp_path_factory) -> Path:
-    flags = ["-g1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"]
-    return build_io_test(tmp_path_factory.mktemp("bin") / "io_test_sanitized", *flags)
-
-
-@pytest.fixture(scope="session")
 def fail_write(tmp_path_factory) -> Path:
     """The library of fail_write.c, for LD_PRELOAD."""
     target = tmp_path_factory.mktemp("bin") / "libfail_write.so"
