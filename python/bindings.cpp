@@ -558,6 +558,8 @@ void bind_simulation(nb::module_& m) {
 }  // namespace
 
 NB_MODULE(_core, m) {
+    // Tables and errors that Python modules hold until the interpreter ends are no leak worth a page of warnings.
+    nb::set_leak_warnings(false);
     m.doc() = "The C interface of Fontana (fontana.h) as Python objects.";
     add_error_classes(m);
     bind_tables(m);

@@ -8,6 +8,7 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
+FLUID_PATHS = ("fluid.rest_density", "fluid.viscosity", "fluid.surface_tension")  # what the name of a fluid stands for
 STANDARD_GRAVITY = 9.81  # m/s^2, for the capillary length
 
 
@@ -77,10 +78,11 @@ def fluid_parameters(fluid: Fluid, particle_spacing: float) -> tuple[dict[str, f
     Surface tension is left out where the particles are coarser than the capillary length: it acts on drops smaller
     than that, which such particles cannot form, and it would cost substeps without being seen.
     """
-    values = {"fluid.rest_density": fluid.density, "fluid.viscosity": fluid.viscosity}
+    density, viscosity, surface_tension = FLUID_PATHS
+    values = {density: fluid.density, viscosity: fluid.viscosity}
     notes = []
     if particle_spacing <= fluid.capillary_length:
-        values["fluid.surface_tension"] = fluid.surface_tension
+        values[surface_tension] = fluid.surface_tension
     else:
         notes.append(
             f"surface tension of {fluid.key} ({fluid.surface_tension:g} N/m) is left out: it shapes drops below "

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Mapping
 
 from fontana.errors import SceneError, clean
+from fontana.fluid_table import FLUID_PATHS
 from fontana.reader import normalized
 from fontana.tables import parameters
 
@@ -41,9 +42,21 @@ def apply_overrides(document: object, overrides: Mapping[str, object]) -> object
     if not overrides:
         return document
     changed = json.loads(json.dumps(document))
-    for path, value in overrides.items():
-        _assign(changed, path, normalized(value, (path,)))
+    names = {path: value for path, value in overrides.items() if path in ("fluid", "fluid.type")}
+    for path, value in (names | dict(overrides)).items():  # the name of a fluid first: the rest changes its values
+        value = normalized(value, (path,))
+        if path in names and isinstance(value, str) and isinstance(changed, dict):
+            changed["fluid"] = _another_fluid(changed.get("fluid"), value)
+        else:
+            _assign(changed, path, value)
     return changed
+
+
+def _another_fluid(fluid: object, name: str) -> object:
+    """The fluid of a scene under another name: it keeps its particles and loses the values the name stands for."""
+    kept = fluid if isinstance(fluid, dict) else {}
+    own = ("type", *(path.split(".")[1] for path in FLUID_PATHS))
+    return {"type": name} | {key: value for key, value in kept.items() if key not in own}
 
 
 def _assign(document: object, path: str, value: object) -> None:

@@ -17,7 +17,7 @@ COLUMNS = 4
 FRAME_COUNT = 8
 PANEL = (640, 440)  # pixels
 SUPERSAMPLING = 2
-SPHERE_SCALE = 1.15  # drawn radius over half the spacing: closes the gaps of a fluid at rest
+SPHERE_SCALE = 1.15  # drawn over real radius: closes the gaps of a fluid at rest
 DARK, LIGHT_TEXT, DIM_TEXT = "#07090d", "#e8eef5", "#8b98a8"
 
 
@@ -53,7 +53,8 @@ def _draw_frames(scene: Scene, records: list[dict], frames: list[dict]) -> tuple
     fast = float(np.quantile(everything, 0.996)) if len(everything) else 1.0
     bounds = _bounds(scene, frames)
     view = _view(scene, bounds)
-    radius = 0.5 * simulation.get("fluid.particle_spacing") * SPHERE_SCALE
+    radii = np.concatenate([frame["radius"] for frame in frames])
+    radius = SPHERE_SCALE * float(radii[0]) if len(radii) else 0.0
     stage = Stage(view, scene.colliders, _centres(simulation, 0.0), bounds)
     images = [
         _shrink(stage.draw(_centres(simulation, record["time"]), frame["position"], speed, radius, fast))
@@ -118,7 +119,7 @@ def _sheet(scene: Scene, manifest: Manifest, records: list[dict], images: list[n
     import matplotlib
 
     matplotlib.use("Agg")
-    from matplotlib import pyplot
+    from matplotlib import patheffects, pyplot
 
     columns = min(COLUMNS, len(images))
     rows = -(-len(images) // columns)
@@ -134,7 +135,9 @@ def _sheet(scene: Scene, manifest: Manifest, records: list[dict], images: list[n
         axes.imshow(image, interpolation="none", aspect="auto")
         axes.set_axis_off()
         caption = f"frame {record['frame']}   {record['time']:.2f} s"
-        axes.text(0.025, 0.045, caption, transform=axes.transAxes, color=LIGHT_TEXT, fontsize=13)
+        outline = [patheffects.withStroke(linewidth=3, foreground=DARK)]  # drops may fly behind the words
+        place = {"transform": axes.transAxes, "path_effects": outline}
+        axes.text(0.025, 0.045, caption, color=LIGHT_TEXT, fontsize=13, **place)
     particles = records[-1]["particles"]
     device = manifest.data["device"]["backend"]
     title = f"{scene.name.replace('_', ' ')}"

@@ -73,7 +73,7 @@ def _cast_plane(hits, index, plane, centre, others, origin, direction, bounds) -
     axis, side = _AXES[plane["type"]], _side(plane)
     distance = (centre[axis] - origin[..., axis]) / direction[..., axis]
     distance = np.where(direction[..., axis] * side < 0, distance, np.inf)
-    point = origin + np.where(np.isfinite(distance), distance, 0.0)[..., None] * direction
+    point = origin + _finite(distance)[..., None] * direction
     seen = np.ones(distance.shape, bool)
     for k in range(3):
         if k != axis:
@@ -94,7 +94,7 @@ def _cast_sphere(hits, index, sphere, centre, origin, direction) -> None:
         _dot(direction, direction), _dot(relative, direction), _dot(relative, relative) - sphere["radius"] ** 2
     )
     distance = far if inside else near
-    normal = (relative + np.nan_to_num(distance)[..., None] * direction) / sphere["radius"]
+    normal = (relative + _finite(distance)[..., None] * direction) / sphere["radius"]
     hits.add(index, distance, -normal if inside else normal)
 
 
@@ -119,7 +119,7 @@ def _cast_tube(hits, index, centre, radius, is_outer, heights, origin, direction
     relative, along = (origin - centre) * flat, direction * flat
     near, far = _roots(_dot(along, along), _dot(relative, along), _dot(relative, relative) - radius**2)
     distance = near if is_outer else far
-    steps = np.nan_to_num(distance)
+    steps = _finite(distance)
     height = origin[..., 1] + steps * direction[..., 1]
     distance = np.where((height >= heights[0]) & (height <= heights[1]), distance, np.inf)
     normal = (relative + steps[..., None] * along) / radius
@@ -128,10 +128,15 @@ def _cast_tube(hits, index, centre, radius, is_outer, heights, origin, direction
 
 def _cast_rim(hits, index, centre, radii, top, origin, direction) -> None:
     distance = (top - origin[..., 1]) / direction[..., 1]
-    point = origin + np.nan_to_num(distance)[..., None] * direction - centre
+    point = origin + _finite(distance)[..., None] * direction - centre
     squared = point[..., 0] ** 2 + point[..., 2] ** 2
     on_rim = (squared >= radii[0] ** 2) & (squared <= radii[1] ** 2)
     hits.add(index, np.where(on_rim, distance, np.inf), np.broadcast_to([0.0, 1.0, 0.0], direction.shape))
+
+
+def _finite(distance: np.ndarray) -> np.ndarray:
+    """Distances to compute with: zero where a ray meets nothing."""
+    return np.where(np.isfinite(distance), distance, 0.0)
 
 
 def _dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:

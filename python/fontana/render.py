@@ -82,7 +82,8 @@ def splat(view: View, points: np.ndarray, radius: float) -> tuple[np.ndarray, np
     winner = np.full(width * height, -1)
     normal = np.zeros((width * height, 3))
     pixel_radius = np.clip(radius * scale, 0.7, 40.0)
-    reach = np.ceil(pixel_radius).astype(int)
+    # Few classes of size, each drawn offset by offset for all its spheres: powers of the root of two.
+    reach = np.ceil(2 ** (0.5 * np.ceil(2 * np.log2(pixel_radius)))).astype(int)
     for size in np.unique(reach):
         chosen = np.flatnonzero((reach == size) & (depth > radius))
         for dy in range(-size, size + 1):

@@ -8,7 +8,7 @@ from fontana.complaints import check
 from fontana.errors import SceneError, path_text, show_value
 from fontana.fluid_table import fluid_parameters, fluids
 from fontana.tables import COLLIDERS, EMITTERS, KEY_FIELDS, VIEW_FIELDS, groups, parameters
-from fontana.units import KINEMATIC_VISCOSITY, UnitError, parse_quantity, show
+from fontana.units import KINEMATIC_VISCOSITY, UnitError, has_unit, parse_quantity, show
 
 Path = tuple[str | int, ...]
 
@@ -18,11 +18,12 @@ def resolve_document(document: object) -> dict:
     check(document)
     assert isinstance(document, dict)
     values, notes = _resolve_parameters(document)
+    scale = values.get("time.simulation_scale", 1.0)
     result = {key: document[key] for key in ("name", "description", "preset") if key in document}
     result |= {"parameters": values, "notes": notes}
-    result["emitters"] = _resolve_list(document, "emitters", EMITTERS)
-    result["colliders"] = _resolve_list(document, "colliders", COLLIDERS)
-    result["view"] = _resolve_fields(document.get("view", {}), VIEW_FIELDS, ("view",))
+    result["emitters"] = _resolve_list(document, "emitters", EMITTERS, scale)
+    result["colliders"] = _resolve_list(document, "colliders", COLLIDERS, scale)
+    result["view"] = _resolve_fields(document.get("view", {}), VIEW_FIELDS, ("view",), scale)
     if "frames" in document.get("output", {}):
         result["frame_count"] = int(document["output"]["frames"])
     return result
@@ -67,16 +68,20 @@ def dynamic_viscosity(value: float, density: float) -> float:
     return value
 
 
-def resolve_value(value: object, field, path: Path) -> object:
-    """The value of a parameter or field in SI. `field` is one of the tables'. Raises SceneError."""
+def resolve_value(value: object, field, path: Path, scale: float = 1.0) -> object:
+    """The value of a parameter or field in SI. `field` is one of the tables'. Raises SceneError.
+
+    A place, size or speed of a scene whose unit is not the metre: `scale` is time.simulation_scale, by which the solver
+    will multiply it. A plain number is meant in that unit; text with a unit says what it is and is divided beforehand.
+    """
     if field.type == "vector":
-        return [_number(part, field, (*path, index)) for index, part in enumerate(value)]
+        return [_number(part, field, (*path, index), scale) for index, part in enumerate(value)]
     if field.type == "float":
-        return _number(value, field, path)
+        return _number(value, field, path, scale)
     return int(value) if field.type == "int" else value
 
 
-def _number(value: float | str, field, path: Path) -> float:
+def _number(value: float | str, field, path: Path, scale: float) -> float:
     number, unit = float(value) if not isinstance(value, str) else value, field.unit
     if isinstance(number, str):
         try:
@@ -85,6 +90,8 @@ def _number(value: float | str, field, path: Path) -> float:
             raise SceneError(f"{path_text(path)}: {show_value(value)}: {error}") from error
     if unit == KINEMATIC_VISCOSITY and field.unit != unit:
         number = Kinematic(number)
+    if isinstance(value, str) and has_unit(value) and field.unit in ("m", "m/s"):
+        number /= scale
     _check_range(number, field, path)
     return number
 
@@ -95,27 +102,27 @@ def _check_range(value: float, field, path: Path) -> None:
         raise SceneError(f"{path_text(path)}: {show(value, field.unit)} is {word} allowed, {show(bound, field.unit)}")
 
 
-def _resolve_list(document: dict, name: str, types: dict) -> list[dict]:
+def _resolve_list(document: dict, name: str, types: dict, scale: float) -> list[dict]:
     return [
-        {"type": entry["type"]} | _resolve_fields(entry, types[entry["type"]], (name, index))
+        {"type": entry["type"]} | _resolve_fields(entry, types[entry["type"]], (name, index), scale)
         for index, entry in enumerate(document.get(name, []))
     ]
 
 
-def _resolve_fields(entry: dict, fields: tuple, path: Path) -> dict:
+def _resolve_fields(entry: dict, fields: tuple, path: Path, scale: float) -> dict:
     values = {
-        field.name: resolve_value(entry[field.name], field, (*path, field.name))
+        field.name: resolve_value(entry[field.name], field, (*path, field.name), scale)
         for field in fields
         if field.name in entry
     }
     values |= {name: entry[name] for name in ("label", "frames") if name in entry}
     if "keys" in entry:
-        values["keys"] = _resolve_keys(entry["keys"], (*path, "keys"))
+        values["keys"] = _resolve_keys(entry["keys"], (*path, "keys"), scale)
     return values
 
 
-def _resolve_keys(keys: list[dict], path: Path) -> list[dict]:
-    result = [_resolve_fields(key, KEY_FIELDS, (*path, index)) for index, key in enumerate(keys)]
+def _resolve_keys(keys: list[dict], path: Path, scale: float) -> list[dict]:
+    result = [_resolve_fields(key, KEY_FIELDS, (*path, index), scale) for index, key in enumerate(keys)]
     clock = next((word for word in ("frame", "time") if word in result[0]), "frame")
     for index, key in enumerate(result):
         place = path_text((*path, index))

@@ -25,6 +25,8 @@ from fontana.resolve import resolve_document
 from fontana.tables import groups, suggestion
 
 DEFAULT_FRAME_COUNT = 120
+# Parameters of the solver that say where and by which scheme, and change a frame by no more than rounding.
+WHERE = ("backend", "neighbors", "precision", "threads", "device", "profile")
 
 
 @dataclass
@@ -149,7 +151,7 @@ def bundled_scenes() -> dict[str, Path]:
 def digest(document: Mapping) -> str:
     """A fingerprint of what a resolved scene simulates: equal for two scenes that give the same frames.
 
-    Where and how it is computed (solver), how long it runs and how it is looked at do not count.
+    Where it is computed, how long it runs and how it is looked at do not count.
     """
     text = json.dumps(physics(document), sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()[:32]
@@ -157,7 +159,8 @@ def digest(document: Mapping) -> str:
 
 def physics(document: Mapping) -> dict:
     """The parts of a resolved scene that its frames depend on."""
-    return {key: value for key, value in document.items() if key not in ("solver", "output", "view", "description")}
+    result = {key: value for key, value in document.items() if key not in ("output", "view", "description")}
+    return result | {"solver": _without(document["solver"], *WHERE)}
 
 
 def changed_keys(before: object, after: object, path: str = "") -> list[str]:

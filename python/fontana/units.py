@@ -76,6 +76,12 @@ def parse_quantity(text: str, unit: str) -> tuple[float, str]:
     raise UnitError(f'"{match[2]}" is not a unit of this value: expected {expectation(unit)}')
 
 
+def has_unit(text: str) -> bool:
+    """Whether a quantity names its unit."""
+    match = _QUANTITY.fullmatch(text)
+    return bool(match and match[2])
+
+
 def _convert(value: float, given, target: str) -> float:
     try:
         converted = float(_registry().Quantity(value, given).to(target or "dimensionless").magnitude)

@@ -62,8 +62,7 @@ def test_files_that_are_named_exist(path):
     missing = [
         name
         for name in sorted(named)
-        if not name.startswith(MADE)
-        and not any((root / name).exists() for root in (*PATH_ROOTS, path.parent))
+        if not name.startswith(MADE) and not any((root / name).exists() for root in (*PATH_ROOTS, path.parent))
     ]
     assert not missing, f"{path.name} names files that do not exist"
 

@@ -50,8 +50,16 @@ def test_fast_arithmetic_agrees_over_one_substep(backend, make_simulation, rando
     """The vector loops of the cpu and OpenCL's contraction against strict arithmetic."""
     results = []
     for name, precision in (("cpu", "strict"), (backend, "fast")):
-        simulation = dam_break(make_simulation, method, name, solver__precision=precision, fluid__kernel=kernel,
-                               time__timestep=5e-4, solver__quality="custom", solver__density_error=1e-3)
+        simulation = dam_break(
+            make_simulation,
+            method,
+            name,
+            solver__precision=precision,
+            fluid__kernel=kernel,
+            time__timestep=5e-4,
+            solver__quality="custom",
+            solver__density_error=1e-3,
+        )
         position, velocity = random_block(6, SPACING)  # a jittered cube that has just landed beside the water
         simulation.add_particles(position * np.float32(0.8) + np.array([0.6, 0.0, 0.0], np.float32), velocity)
         simulation.step_frame()
@@ -79,15 +87,15 @@ def test_methods_agree_on_a_dam_break(make_simulation):
         "dfsph": {},
         "dfsph jacobi": {"fluid__method": "dfsph", "solver__pressure_solver": "jacobi"},
         "pcisph": {},
-        "wcsph": {"fluid__pressure_constant": 1000.0},
+        "wcsph": {"fluid__pressure_constant": 4000.0},
     }.items():
         simulation = dam_break(make_simulation, name.split()[0], **parameters)
         for _ in range(9):
             report = simulation.step_frame()
         runs[name] = (simulation.read("position")[:, 0].max(), *report.centre_of_mass[:2], report.kinetic_energy)
     for name, found in runs.items():
-        # wcsph is as springy as its speed of sound, 32 m/s here, lets it be; pcisph takes impacts harder.
-        tolerance = {"wcsph": 0.12, "pcisph": 0.08}.get(name, 0.05)
+        # wcsph has no solve in which an impact loses energy; pcisph takes impacts harder than dfsph.
+        tolerance = {"wcsph": 0.2, "pcisph": 0.08}.get(name, 0.05)
         assert found == pytest.approx(runs["dfsph jacobi"], rel=tolerance), name
 
 
@@ -143,8 +151,13 @@ def test_a_solve_that_gives_up_says_so(make_simulation):
 def test_crowded_particles_make_the_lists_grow(make_simulation):
     """Two hundred particles within one support radius: nobody is dropped from anybody's list."""
     generator = np.random.default_rng(2)
-    simulation = make_simulation(fluid__method="wcsph", fluid__support_radius=0.04, time__timestep=1e-12,
-                                 time__substeps=1, forces__gravity=(0, 0, 0))
+    simulation = make_simulation(
+        fluid__method="wcsph",
+        fluid__support_radius=0.04,
+        time__timestep=1e-12,
+        time__substeps=1,
+        forces__gravity=(0, 0, 0),
+    )
     position = generator.uniform(0.0, 0.02, (200, 3)).astype(np.float32)
     simulation.add_particles(position)
     simulation.step_frame()

@@ -124,6 +124,16 @@ def test_units_become_si() -> None:
     assert scene.emitters[0]["size"] == pytest.approx([0.5, 1, 1])
 
 
+def test_text_with_a_unit_is_not_scaled_again() -> None:
+    """In a scene in centimetres plain numbers are centimetres, and "5 cm" is five of them."""
+    sphere = {"type": "sphere_outside", "centre": [0, "10 cm", 30], "radius": "5 cm", "velocity": ["1 m/s", 0, 0]}
+    scene = load_scene({"time": {"simulation_scale": 0.01}, "colliders": [sphere]})
+    collider = scene.colliders[0]
+    assert collider["centre"] == pytest.approx([0, 10, 30])
+    assert collider["radius"] == pytest.approx(5)
+    assert collider["velocity"] == pytest.approx([100, 0, 0])
+
+
 def test_kinematic_viscosity_takes_the_density_of_the_scene() -> None:
     simulation = load_scene({"fluid": {"viscosity": "7e-3 m2/s", "rest_density": 1420}}).build()
     assert simulation.get("fluid.viscosity") == pytest.approx(9.94)
@@ -170,6 +180,19 @@ def test_overrides_win_and_reach_every_part() -> None:
     assert document["fluid"] == "honey"
 
 
+def test_another_fluid_keeps_the_particles_and_loses_the_values() -> None:
+    document = {"fluid": {"particle_spacing": 0.01, "viscosity": 3, "rest_density": 900, "surface_tension": 0.1}}
+    for override in ({"fluid": "honey"}, {"fluid.type": "honey"}):
+        scene = load_scene(document, {"fluid.surface_tension": 0.5} | override)
+        honey = fontana.fluids()["honey"]
+        assert scene.parameters == {
+            "fluid.particle_spacing": 0.01,
+            "fluid.rest_density": honey.density,
+            "fluid.viscosity": honey.viscosity,
+            "fluid.surface_tension": 0.5,
+        }
+
+
 @pytest.mark.parametrize(
     ("assignment", "sentence"),
     [
@@ -212,8 +235,9 @@ def test_the_digest_is_that_of_the_physics(drop: dict) -> None:
         scene = load_scene(drop, overrides)
         return digest(scene.resolved(scene.build()))
 
-    assert of({}) == of({"solver.threads": 1, "output.frames": 99, "description": "other"})
+    assert of({}) == of({"solver.threads": 1, "solver.neighbors": "all-pairs", "output.frames": 99, "description": "x"})
     assert of({}) != of({"fluid.viscosity": 4.9})
+    assert of({}) != of({"solver.max_iterations": 7})
     assert of({}) != of({"colliders[1].radius": 0.11})
 
 

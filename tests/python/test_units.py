@@ -43,16 +43,12 @@ def test_kinematic_viscosity_is_for_viscosity_only() -> None:
     ("text", "complaint"),
     [
         ("5 kg", '"kg" is not a unit of this value: expected a number in m'),
-        ("5 furlogs", '"furlogs" is not a unit'),
         ("five mm", "expected a number in m"),
         ("nan mm", "expected a number in m"),
         ("inf", "expected a number in m"),
         ("1e999 m", "too large"),
         ("1e300 Ym", "too large"),
         ("20 degC", "not a unit of this value"),
-        ("5 m**9**9**9", "is not a unit"),  # pint itself would compute for ever
-        ("1 " + "m " * 9, "is not a unit"),
-        ("1 __import__('os')", "is not a unit"),
         ("", "expected a number in m"),
     ],
 )
@@ -60,3 +56,11 @@ def test_refuses_with_a_sentence(text: str, complaint: str) -> None:
     with pytest.raises(UnitError) as error:
         parse_quantity(text, "m")
     assert complaint in str(error.value)
+
+
+@pytest.mark.parametrize("unit", ["furlogs", "m**9**9**9", "m m m m m m m m m", "__import__('os')", "m)", "m //s"])
+def test_what_is_not_a_unit_is_not_evaluated(unit: str) -> None:
+    """pint itself would compute 9**9**9 for ever."""
+    with pytest.raises(UnitError) as error:
+        parse_quantity(f"5 {unit}", "m")
+    assert str(error.value) == f'"{unit}" is not a unit'

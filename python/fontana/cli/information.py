@@ -216,7 +216,16 @@ def fluids(name: str | None, as_json: bool) -> None:
 
 def _print_fluids(table: list) -> None:
     print_table(
-        ["fluid", "at C", "density kg/m^3", "viscosity Pa.s", "kinematic m^2/s", "tension N/m", "confidence", "not Newtonian"],
+        [
+            "fluid",
+            "at C",
+            "density kg/m^3",
+            "viscosity Pa.s",
+            "kinematic m^2/s",
+            "tension N/m",
+            "confidence",
+            "not Newtonian",
+        ],
         [
             [
                 fluid.key,

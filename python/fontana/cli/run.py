@@ -110,7 +110,7 @@ def run(
         restart=restart,
         accept_changed=accept_changed,
         picture=picture,
-        source=scene,
+        variation=["fontana", "run", scene, *(word for text in assignments for word in ("--set", text))],
         command=["fontana", *sys.argv[1:]],
     )
     if dry_run:

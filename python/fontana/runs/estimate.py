@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 
 import click
 
@@ -15,24 +16,41 @@ from fontana.scene import Scene
 
 CALIBRATION_SECONDS = 3.0
 LIMITS = ("advection", "acceleration", "acoustic", "viscosity", "surface_tension")
-_SUM_SAMPLES = 1000
+CALIBRATION_PARTICLES = 300_000
+# The share of a device's memory that particles may take: sorting, emission and files need some for a while, and the
+# system of a CPU the rest.
+USABLE_MEMORY = {"gpu": 0.9, "cpu": 0.6}
+_SUM_SAMPLES = 50
+
+
+def check_memory(simulation: _core.Simulation, particle_count: int) -> int:
+    """The bytes that so many particles take on the device. Raises OutOfMemory if they will not fit."""
+    device = simulation.device()
+    needed = simulation.estimate_memory(particle_count)
+    usable = device.memory_bytes * USABLE_MEMORY["gpu" if device.is_gpu else "cpu"]
+    if 0 < usable < needed:
+        raise _core.OutOfMemory(
+            f"{particle_count:,} particles take {data_size(needed)}, and {device.name} has {data_size(usable)} for "
+            "them; use a larger fluid.particle_spacing"
+        )
+    return needed
 
 
 def estimate(scene: Scene, formats: tuple[str, ...]) -> dict:
     """A plain object with the costs: SI units, bytes, seconds. Simulates a few seconds on a copy.
 
-    Raises SceneError and BadInput as a run would, and Unstable if the first frames already are.
+    Raises SceneError and BadInput as a run would, OutOfMemory if it cannot fit, Unstable if it already is.
     """
     simulation = scene.build()
     simulation.check()
     frames = scene.frame_count
     particles = simulation.emitted_by(frames)
+    memory = check_memory(simulation, particles)
     particle_frames = _sum_over_frames(simulation, frames)
     limits = _substeps_by_limit(scene, simulation)
-    calibration = _calibrate(scene)
-    substeps = max(1.0, calibration["substeps_per_frame"], *limits.values())
-    if simulation.get("time.substeps"):
-        substeps = simulation.get("time.substeps")
+    calibration = _calibrate(scene, particles)
+    fixed = simulation.get("time.substeps")
+    substeps = fixed or max(1.0, calibration["substeps_per_frame"] or 0.0, *limits.values())
     per_particle = sum(BYTES_PER_PARTICLE[format] for format in formats)
     return {
         "scene": scene.name,
@@ -41,7 +59,7 @@ def estimate(scene: Scene, formats: tuple[str, ...]) -> dict:
         "spacing": simulation.get("fluid.particle_spacing"),
         "fluid": describe_fluid(simulation),
         "device": describe_device(simulation),
-        "device_bytes": simulation.estimate_memory(particles),
+        "device_bytes": memory,
         "disk_bytes": particle_frames * per_particle + 2 * particles * CHECKPOINT_BYTES_PER_PARTICLE,
         "substeps_by_limit": limits,
         "substeps_per_frame": substeps,
@@ -89,29 +107,40 @@ def _half_height(emitter: dict) -> float:
     return 0.5 * emitter["size"][1] if "size" in emitter else emitter["radius"]
 
 
-def _calibrate(scene: Scene) -> dict:
-    """Simulates the first frames of a copy for a few seconds; a frame that takes longer is cut between substeps."""
-    simulation = scene.build()
+def _calibrate(scene: Scene, particle_count: int) -> dict:
+    """Simulates the first frames of a copy for a few seconds; a frame that takes longer is cut between substeps.
+
+    A large scene is measured with coarser particles: the time of a particle-substep hardly depends on their number, but
+    the substeps do, so substeps_per_frame is None then.
+    """
+    is_coarse = particle_count > CALIBRATION_PARTICLES
+    simulation = _coarser(scene, particle_count).build() if is_coarse else scene.build()
     simulation.device()  # building its programs is not part of a substep
     begin = time.perf_counter()
-    work = substeps = frames = 0
+    work = substeps = 0
+    finished = 0.0  # frames, and the share done of the present one
 
     def count(fraction: float) -> bool:
-        nonlocal work, substeps
+        nonlocal work, substeps, finished
         substeps += 1
         work += simulation.particle_count
+        finished = simulation.frame + fraction
         return time.perf_counter() - begin > CALIBRATION_SECONDS
 
-    progress = 0.0
     try:
-        while frames < scene.frame_count and time.perf_counter() - begin < CALIBRATION_SECONDS:
+        while simulation.frame < scene.frame_count and time.perf_counter() - begin < CALIBRATION_SECONDS:
             simulation.step_frame(count)
-            frames += 1
     except _core.Interrupted:
         pass
     seconds = time.perf_counter() - begin
-    progress = max(frames, 1)
-    return {"frames": frames, "substeps_per_frame": substeps / progress, "rate": work / seconds, "seconds": seconds}
+    per_frame = None if is_coarse else substeps / max(finished, 1e-9)
+    return {"substeps_per_frame": per_frame, "rate": max(work, 1) / seconds, "seconds": seconds}
+
+
+def _coarser(scene: Scene, particle_count: int) -> Scene:
+    """The same scene with about CALIBRATION_PARTICLES particles."""
+    spacing = scene.build().get("fluid.particle_spacing") * (particle_count / CALIBRATION_PARTICLES) ** (1 / 3)
+    return replace(scene, parameters=scene.parameters | {"fluid.particle_spacing": spacing})
 
 
 def print_estimate(result: dict) -> None:

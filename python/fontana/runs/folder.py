@@ -51,15 +51,12 @@ class RunFolder:
 
     @property
     def checkpoints(self) -> tuple[Path, Path]:
-        """The last one and the one before it, which stays whole while the last is replaced."""
-        return self.path / f"{self.name}.checkpoint", self.path / f"{self.name}.previous.checkpoint"
+        """The last one and the one before it, as the library names them."""
+        return self.path / f"{self.name}.checkpoint", self.path / f"{self.name}.checkpoint.previous"
 
     def save_checkpoint(self, simulation: _core.Simulation, digest: str) -> None:
-        """Raises IoError; the checkpoint before it is kept."""
-        last, previous = self.checkpoints
-        if last.exists():
-            os.replace(last, previous)
-        simulation.save_checkpoint(str(last), digest)
+        """Raises IoError; the library keeps the checkpoint before it, and at every instant one that is whole."""
+        simulation.save_checkpoint(str(self.checkpoints[0]), digest)
 
     def load_checkpoint(
         self, simulation: _core.Simulation, digests: set[str], most_frames: int

@@ -7,13 +7,15 @@ import sys
 import time
 from collections import deque
 
-from rich.console import Console
+from rich.console import Console, Group
+from rich.live import Live
 from rich.progress import BarColumn, Progress, TextColumn
+from rich.text import Text
 
 from fontana import _core
 from fontana.runs.folder import RunFolder
 from fontana.runs.manifest import MANIFEST_NAME, Manifest
-from fontana.runs.text import clock, describe_device, describe_fluid, frame_line, length
+from fontana.runs.text import clock, describe_device, describe_fluid, frame_details, length, pace_text
 from fontana.scene import Scene
 
 _RATE_WINDOW = 8  # frames over which speed and remaining time are averaged
@@ -90,7 +92,9 @@ class LineReporter(Reporter):
 
     def frame(self, record: dict, frame_count: int) -> None:
         self._pace.add(record)
-        self.print(frame_line(record, frame_count, self._pace.rate, self._pace.remaining(frame_count)))
+        width = len(str(frame_count))
+        pace = pace_text(self._pace.rate, self._pace.remaining(frame_count))
+        self.print(f"frame {record['frame']:{width}d}/{frame_count}  {frame_details(record)}  {pace}")
 
     def finish(self, simulation: _core.Simulation, folder: RunFolder, manifest: Manifest, advice: str) -> None:
         seconds = sum(frame.get("seconds", 0.0) for frame in manifest.frames)
@@ -115,20 +119,22 @@ class LineReporter(Reporter):
 
 
 class BarReporter(LineReporter):
-    """A bar on a terminal, above it the notes."""
+    """A bar on a terminal, under it what the last frame was like."""
 
     def __init__(self) -> None:
         super().__init__()
-        columns = (TextColumn("{task.description}"), BarColumn(bar_width=None), TextColumn("{task.fields[text]}"))
-        self._progress = Progress(*columns, console=self.console, transient=False)
-        self._task = None
+        columns = (TextColumn("{task.description}"), BarColumn(bar_width=32), TextColumn("{task.fields[pace]}"))
+        self._progress = Progress(*columns, console=self.console)
+        self._details = Text("", style="dim")
+        self._live = Live(Group(self._progress, self._details), console=self.console, refresh_per_second=8)
+        self._task = self._progress.add_task("first frame", total=None, pace="")
         self._done = 0
 
     def start(self, scene: Scene, simulation: _core.Simulation, folder: RunFolder, done: int) -> None:
         super().start(scene, simulation, folder, done)
         self._done = done
-        self._task = self._progress.add_task(scene.name, total=scene.frame_count, completed=done, text="first frame")
-        self._progress.start()
+        self._progress.update(self._task, total=scene.frame_count, completed=done)
+        self._live.start()
 
     def substep(self, fraction: float) -> None:
         self._progress.update(self._task, completed=self._done + fraction)
@@ -136,11 +142,13 @@ class BarReporter(LineReporter):
     def frame(self, record: dict, frame_count: int) -> None:
         self._pace.add(record)
         self._done = record["frame"]
-        text = frame_line(record, frame_count, self._pace.rate, self._pace.remaining(frame_count))
-        self._progress.update(self._task, completed=self._done, text=text)
+        pace = pace_text(self._pace.rate, self._pace.remaining(frame_count))
+        label = f"frame {self._done}/{frame_count}"
+        self._progress.update(self._task, completed=self._done, description=label, pace=pace)
+        self._details.plain = frame_details(record)
 
     def close(self) -> None:
-        self._progress.stop()
+        self._live.stop()
 
     def finish(self, simulation: _core.Simulation, folder: RunFolder, manifest: Manifest, advice: str) -> None:
         self.close()

@@ -10,12 +10,13 @@ from pathlib import Path
 
 from fontana import _core
 from fontana.formats import BYTES_PER_PARTICLE, write_frame
+from fontana.runs.estimate import check_memory
 from fontana.runs.folder import RunFolder
 from fontana.runs.lock import FolderLock
 from fontana.runs.manifest import Manifest, hash_text
 from fontana.runs.reporters import Reporter
 from fontana.runs.stop import StopSignals
-from fontana.runs.text import data_size, length
+from fontana.runs.text import length
 from fontana.scene import Scene, changed_keys, digest, physics
 
 DEFAULT_CHECKPOINT_EVERY = 10
@@ -40,7 +41,7 @@ class RunOptions:
     restart: bool = False
     accept_changed: bool = False
     picture: bool = True
-    source: str = ""  # what the user called the scene
+    variation: list[str] = field(default_factory=list)  # the command so far, to which changes can be added
     command: list[str] = field(default_factory=list)
 
 
@@ -105,11 +106,14 @@ class _Run:
         self.reporter.finish(self.simulation, self.folder, self.manifest, self._next_command())
 
     def _next_command(self) -> str:
-        """Something to try after this run: the same with finer particles."""
+        """Something to try after this run: the same with finer particles, or more of it."""
+        if not self.options.variation:
+            more = str(2 * self.scene.frame_count)
+            return shlex.join(["fontana", "resume", str(self.folder.path), "--frames", more])
         spacing = length(0.8 * self.simulation.get("fluid.particle_spacing")).replace(" ", "")
         out = self.folder.path.with_name(f"{self.folder.path.name}_fine")
-        source = self.options.source or self.scene.name
-        return shlex.join(["fontana", "run", source, "--set", f"fluid.particle_spacing={spacing}", "--out", str(out)])
+        finer = ["--set", f"fluid.particle_spacing={spacing}", "--out", str(out)]
+        return shlex.join([*self.options.variation, *finer])
 
     def _open_manifest(self) -> Manifest:
         """The manifest to go on with: that of the run in the folder, cut to its checkpoint, or a new one."""
@@ -198,12 +202,7 @@ class _Run:
         names = ("backend", "name", "driver", "memory_bytes", "compute_units")
         self.manifest.data["device"] = {name: getattr(device, name) for name in names}
         count = self.simulation.emitted_by(self.scene.frame_count)
-        memory = self.simulation.estimate_memory(count)
-        if 0 < device.memory_bytes < memory:
-            raise _core.OutOfMemory(
-                f"{count} particles take {data_size(memory)}, and {device.name} has {data_size(device.memory_bytes)}; "
-                "use a larger fluid.particle_spacing"
-            )
+        check_memory(self.simulation, count)
         frame_bytes = count * sum(BYTES_PER_PARTICLE[format] for format in self.options.formats)
         self.folder.check_space(frame_bytes, count)
 
@@ -264,6 +263,8 @@ def _frame_record(report: object) -> dict:
         "dt_min": report.dt_min,
         "dt_max": report.dt_max,
         "limit": report.dt_limit,
+        "iterations": report.iterations,
+        "unconverged": report.unconverged,
         "density_error_mean": report.density_error_mean,
         "density_error_max": report.density_error_max,
         "max_speed": report.max_speed,

@@ -50,11 +50,21 @@ def describe_device(simulation: _core.Simulation) -> str:
     return f"{device.backend} ({device.name}, {units})"
 
 
-def frame_line(record: dict, frame_count: int, rate: float, remaining: float) -> str:
-    """Progress after a frame: what was done, what held the step, how good it is, how long it takes."""
-    width = len(str(frame_count))
+def frame_details(record: dict) -> str:
+    """What was done in a frame, what held the step, and how good it is."""
+    # Methods with a solve know their error to a hundredth of a percent; the others are off by percents.
+    solve, digits = "", 1
+    if record["iterations"]:
+        solve, digits = f" in {record['iterations'] / record['substeps']:.1f} iterations", 3
+    if record["unconverged"]:
+        solve += f", {record['unconverged']} NOT CONVERGED"
     return (
-        f"frame {record['frame']:{width}d}/{frame_count}  {record['particles']:,} particles  "
-        f"{record['substeps']} substeps  dt {record['dt_min'] * 1e3:.3g} ms ({record['limit']})  "
-        f"density +{record['density_error_mean']:.1%}  {rate / 1e6:.2f} M/s  ETA {clock(remaining)}"
+        f"{record['particles']:,} particles  {record['substeps']} substeps  "
+        f"dt {record['dt_min'] * 1e3:.3g} ms ({record['limit']})  "
+        f"density +{record['density_error_mean']:.{digits}%} (max {record['density_error_max']:.1%}){solve}"
     )
+
+
+def pace_text(rate: float, remaining: float) -> str:
+    """How fast it goes (particle-substeps a second) and how long the rest takes (s)."""
+    return f"{rate / 1e6:.2f} M/s  ETA {clock(remaining)}"
