@@ -50,7 +50,7 @@ def _machine() -> dict:
         "cores": os.cpu_count(),
         "usable_cores": usable_cores(),
         "memory_bytes": cpu.memory_bytes,
-        "os": platform.platform(),
+        "os": " ".join([platform.system(), platform.machine(), *platform.libc_ver()]),
         "load_average_before": _load_average(),
     }
 
