@@ -59,7 +59,10 @@ void Simulation::load_checkpoint(const std::string& path) {
     if (checkpoint.section("emitted_batches").size() != emitters_.size() * sizeof(std::uint64_t))
         fail(FONTANA_BAD_INPUT, "the checkpoint " + path + " is of a scene with another number of emitters than " +
                                     std::to_string(emitters_.size()));
-    if (!run.grid.is_possible()) fail(FONTANA_BAD_INPUT, "the checkpoint " + path + " has an impossible grid");
+    // The grid of a frame under way was fitted when it began, perhaps to fewer particles, never to more.
+    if (!run.grid.is_possible(n)) fail(FONTANA_BAD_INPUT, "the checkpoint " + path + " has an impossible grid");
+    if (run.frames_done < 0 || !(run.frame_time >= 0.0 && run.frame_time < 1e9))
+        fail(FONTANA_BAD_INPUT, "the checkpoint " + path + " has an impossible time");
     auto batches = load_array<std::uint64_t>(checkpoint, "emitted_batches", emitters_.size());
     const bool has_force = !checkpoint.section("force").empty();
     ParticleState state;

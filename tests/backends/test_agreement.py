@@ -55,6 +55,19 @@ def test_fast_arithmetic_agrees_within_tolerance(scheme, make_simulation, random
     assert relative_difference(found["acceleration"], expected["acceleration"]) < ACCELERATION_TOLERANCE
 
 
+@pytest.mark.parametrize("method", ["mueller", "dfsph"])
+def test_processors_without_avx2_get_the_same_answer(monkeypatch, make_simulation, random_block, method):
+    """The baseline instructions against the vector loops, over one substep."""
+    densities = []
+    for instructions in ("baseline", "best"):
+        monkeypatch.setenv("FONTANA_CPU_INSTRUCTIONS", instructions)
+        simulation = make_run(make_simulation, random_block, "cpu", "grid", 1, fluid__method=method)
+        simulation.step_frame()
+        assert ("baseline" in simulation.device().driver) == (instructions == "baseline")
+        densities.append(simulation.read("density"))
+    assert relative_difference(*densities) < DENSITY_TOLERANCE
+
+
 def test_automatic_steps_are_the_same_on_every_backend(backend, make_simulation, random_block):
     reports = []
     for name in ("cpu", backend):

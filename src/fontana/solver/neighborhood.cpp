@@ -18,12 +18,16 @@ std::uint32_t bits_for(double cells) {
     return bits;
 }
 
+std::size_t most_cells(std::size_t particle_count) {
+    return std::max(k_least_cells, k_cells_per_particle * particle_count);
+}
+
 }  // namespace
 
-bool GridShape::is_possible() const {
+bool GridShape::is_possible(std::size_t particle_count) const {
     for (const std::uint32_t bits : {bits_x, bits_y, bits_z})
         if (bits < least_bits || bits > most_bits) return false;
-    return bits_x + bits_y + bits_z < 32;
+    return bits_x + bits_y + bits_z < 32 && cell_count() <= most_cells(particle_count);
 }
 
 void Neighborhood::fit(Particles& particles, const StepConstants& constants) {
@@ -33,7 +37,7 @@ void Neighborhood::fit(Particles& particles, const StepConstants& constants) {
     // One cell more than the extent touches, and one empty on the side, so that a compact fluid does not meet itself.
     std::uint32_t bits[3];
     for (int k = 0; k < 3; ++k) bits[k] = bits_for(std::ceil((bounds.high[k] - bounds.low[k]) * per_metre) + 2.0);
-    const std::size_t most = std::max(k_least_cells, k_cells_per_particle * particles.count());
+    const std::size_t most = most_cells(particles.count());
     for (;;) {
         std::uint32_t& longest = *std::max_element(bits, bits + 3);
         const std::uint32_t sum = bits[0] + bits[1] + bits[2];

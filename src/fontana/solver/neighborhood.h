@@ -14,7 +14,8 @@ struct GridShape {
     std::uint32_t bits_x = 2, bits_y = 2, bits_z = 2;
     // 4 cells at the least, so that the 3 neighbours of a cell along an axis differ.
     static constexpr std::uint32_t least_bits = 2, most_bits = 20;
-    bool is_possible() const;  // for one that comes from a file
+    // Whether fit() could have made it for so many particles: for one that comes from a file.
+    bool is_possible(std::size_t particle_count) const;
     std::size_t cell_count() const { return std::size_t{1} << (bits_x + bits_y + bits_z); }
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <new>
@@ -49,7 +50,10 @@ KernelTable choose_kernels(bool strict) {
     constexpr auto count = static_cast<std::size_t>(Kernel::count);
     if (strict) return {{strict_kernels(), strict_kernels() + count}, "strict arithmetic"};
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+    // "baseline" runs what a processor without AVX2 would: for tests, and to tell a compiler's fault from ours.
+    const char* wanted = std::getenv("FONTANA_CPU_INSTRUCTIONS");
+    const bool baseline = wanted && std::string(wanted) == "baseline";
+    if (!baseline && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
         KernelTable table{{avx2_kernels(), avx2_kernels() + count}, "AVX2"};
         for (std::size_t k = 0; k < count; ++k)
             if (const KernelLoop loop = wide_loop(kernel_facts(static_cast<Kernel>(k)).name))
