@@ -9,6 +9,7 @@ export PATH := $(CURDIR)/$(BIN):$(PATH)
 # The main job on the best device present: a rock falls into a fountain.
 demo: build
 	fontana run scenes/fountain_rock.json --backend auto --out out/demo
+	@echo "(fontana is .venv/bin/fontana here; '. .venv/bin/activate' makes it a word of this shell)"
 
 # Everything: style, the tests on every backend, and the tests in C and C++ under sanitizers.
 test: lint unit sanitize
