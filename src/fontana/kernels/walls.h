@@ -19,27 +19,33 @@ typedef struct WallTerm {
     float rate;
 } WallTerm;
 
-// Layers of the spacing H / 2 that a particle at `distance` (m, signed, into the fluid) sees; and the derivative by it.
+// How far from the surface the layers think a particle at `distance` (m, outside the wall) is.
+FN float squeezed_distance(const StepConstants c, float distance) {
+    const float near = distance - 0.25f * c.support_radius;
+    return near < 0.0f ? distance + near : distance;
+}
+
+// Layers of the spacing H / 2 that a particle at `distance` sees; and the derivative by it. Within the wall the share
+// is that at the surface: there the collision pushes, and a slope would throw what lies on a rim.
 FN float wall_share(const StepConstants c, float distance, float thickness) {
-    const float spacing = 0.5f * c.support_radius, near = distance - 0.5f * spacing;
-    const float z = near < 0.0f ? distance + near : distance;
+    const float spacing = 0.5f * c.support_radius, z = squeezed_distance(c, max_f(distance, 0.0f));
     float share = 0.0f;
     for (uint k = 0u; k < 3u; ++k) {
-        const float depth = ((float)k + 0.5f) * spacing, from = (z + depth) * c.inverse_support_radius;
-        if (depth < thickness) share += 0.5f * plane_share(c, from < 0.0f ? -from : from);
+        const float depth = ((float)k + 0.5f) * spacing;
+        if (depth < thickness) share += 0.5f * plane_share(c, max_f((z + depth) * c.inverse_support_radius, 0.0f));
     }
     return share;
 }
 
 FN float wall_slope(const StepConstants c, float distance, float thickness) {
-    const float spacing = 0.5f * c.support_radius, near = distance - 0.5f * spacing;
-    const float z = near < 0.0f ? distance + near : distance;
+    if (distance < 0.0f) return 0.0f;
+    const float spacing = 0.5f * c.support_radius, z = squeezed_distance(c, distance);
     float slope = 0.0f;
     for (uint k = 0u; k < 3u; ++k) {
-        const float depth = ((float)k + 0.5f) * spacing, from = (z + depth) * c.inverse_support_radius;
-        if (depth < thickness) slope += 0.5f * (from < 0.0f ? -plane_slope(c, -from) : plane_slope(c, from));
+        const float depth = ((float)k + 0.5f) * spacing;
+        if (depth < thickness) slope += 0.5f * plane_slope(c, max_f((z + depth) * c.inverse_support_radius, 0.0f));
     }
-    return slope * c.inverse_support_radius * (near < 0.0f ? 2.0f : 1.0f);
+    return slope * c.inverse_support_radius * (distance < 0.5f * spacing ? 2.0f : 1.0f);
 }
 
 // The share of a cylinder's wall that stands at a height of `above` (m) over its rim: 1 far below, 0 far above.
@@ -53,13 +59,20 @@ FN float rim_slope(const StepConstants c, float above) {
     return -plane_share(c, z >= 0.0f ? z : -z) * c.inverse_support_radius;
 }
 
-// One surface.
+// One surface. A wall of finite thickness has a far side, with the normal the other way.
 FN WallTerm wall_of(const StepConstants c, ColliderConstants s, Motion m) {
-    const Contact contact = surface_distance(s, m);
+    Contact contact = surface_distance(s, m);
+    float distance = -contact.depth;
+    if (contact.depth > 0.5f * s.thickness) {
+        distance = contact.depth - s.thickness;
+        contact.nx = -contact.nx;
+        contact.ny = -contact.ny;
+        contact.nz = -contact.nz;
+    }
     float share = 0.0f, slope = 0.0f, rim = 1.0f, along_rim = 0.0f;
-    if (contact.depth < s.thickness && contact.depth > -c.support_radius) {
-        share = wall_share(c, -contact.depth, s.thickness);
-        slope = wall_slope(c, -contact.depth, s.thickness);
+    if (distance < c.support_radius) {
+        share = wall_share(c, distance, s.thickness);
+        slope = wall_slope(c, distance, s.thickness);
     }
     if (s.type >= 5u && s.cutoff < 1.0e30f) {
         rim = rim_share(c, m.y - s.cutoff);
