@@ -177,3 +177,19 @@ def test_walls_count_as_fluid_at_rest_density(make_simulation, method):
     covered = position[:, 1] < 0.4
     assert density[covered].min() > 990.0
     assert density[covered].max() < 1010.0
+
+
+@pytest.mark.parametrize("substeps", [50, 200])
+def test_friction_takes_its_share_per_spacing_travelled(backend, make_simulation, substeps):
+    """A particle that slides on a floor: dv/dx = - friction v / spacing, so v = v0 exp(- friction x / spacing)."""
+    simulation = make_simulation(
+        backend, fluid__method="dfsph", forces__gravity=(0, 0, 0), time__timestep=0.1, time__substeps=substeps
+    )
+    simulation.add_collider("plane_y", friction=0.2)
+    start = np.array([[0.0, 0.008, 0.0], [0.0, 0.5, 3.0]], dtype=np.float32)
+    simulation.add_particles(start, np.array([[1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], dtype=np.float32))
+    simulation.step_frame()
+    position, velocity = simulation.read("position"), simulation.read("velocity")
+    assert velocity[0, 0] == pytest.approx(np.exp(-0.2 * position[0, 0] / 0.02), rel=0.06)
+    assert velocity[0, 0] < 0.7
+    assert velocity[1, 0] == 1.0, "far from the floor nothing slows it"

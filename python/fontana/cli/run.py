@@ -39,6 +39,12 @@ def _with(options):
     return decorate
 
 
+def _kept_settings(assignments: tuple[str, ...]) -> list[str]:
+    """The settings of this command that belong in the next one, which has a particle spacing of its own."""
+    kept = [text for text in assignments if not text.startswith("fluid.particle_spacing")]
+    return [word for text in kept for word in ("--set", text)]
+
+
 @click.command()
 @click.argument("scene")
 @_with(_WHERE_OPTIONS)
@@ -110,7 +116,7 @@ def run(
         restart=restart,
         accept_changed=accept_changed,
         picture=picture,
-        variation=["fontana", "run", scene, *(word for text in assignments for word in ("--set", text))],
+        variation=["fontana", "run", scene, *_kept_settings(assignments)],
         command=["fontana", *sys.argv[1:]],
     )
     if dry_run:

@@ -148,16 +148,40 @@ KERNEL void predict_velocity(THREAD_ARG const StepConstants c, GLOBAL const floa
         MAKE_FLOAT4(c.drag * (v.x + c.dt * a.x), c.drag * (v.y + c.dt * a.y), c.drag * (v.z + c.dt * a.z), v.w);
 }
 
-// x += dt v and the surfaces, which act as a net here: the walls' share of the density does the work.
+// Friction of a surface on what slides within half a spacing of it: for every spacing travelled along it the share
+// `friction` of the sliding velocity is lost, whatever the length of the step; a drag that grows with the square of the
+// velocity, as that of a rough wall does. A hit (collide) takes its own share beside.
+FN Motion slide(const StepConstants c, ColliderConstants s, Motion m) {
+    const float spacing = 0.5f * c.support_radius;
+    const Contact contact = surface_distance(s, m);
+    if (contact.depth < -0.5f * spacing || contact.depth > s.thickness) return m;
+    if (s.type >= 5u && m.y > s.cutoff) return m;
+    const float ux = m.vx - s.velocity_x, uy = m.vy - s.velocity_y, uz = m.vz - s.velocity_z;
+    const float normal = ux * contact.nx + uy * contact.ny + uz * contact.nz;
+    const float tx = ux - normal * contact.nx, ty = uy - normal * contact.ny, tz = uz - normal * contact.nz;
+    const float travelled = c.dt * SQRT(tx * tx + ty * ty + tz * tz) / spacing;
+    const float lost = min_f(1.0f, s.friction * travelled);
+    m.vx -= lost * tx;
+    m.vy -= lost * ty;
+    m.vz -= lost * tz;
+    return m;
+}
+
+// x += dt v, with the surfaces' friction before and, as a net, their collisions after: what keeps the fluid off them is
+// the walls' share of the density.
 KERNEL void advect(THREAD_ARG const StepConstants c, GLOBAL const ColliderConstants* RESTRICT collider,
                    GLOBAL float4* RESTRICT position, GLOBAL float4* RESTRICT velocity) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
     const float4 x = position[i], v = velocity[i];
     Motion m;
+    m.x = x.x;
+    m.y = x.y;
+    m.z = x.z;
     m.vx = v.x;
     m.vy = v.y;
     m.vz = v.z;
+    for (uint k = 0u; k < c.collider_count; ++k) m = slide(c, collider[k], m);
     m.x = x.x + c.dt * m.vx;
     m.y = x.y + c.dt * m.vy;
     m.z = x.z + c.dt * m.vz;
