@@ -39,10 +39,13 @@ class Dfsph : public Method {
 
  private:
     // Where nothing moves fast enough to shorten the step, what is left of the error from one step to the next shows as
-    // a hum of a few cm/s; a tighter solve is cheap there and calms it.
+    // a hum of a few cm/s; a tighter solve is cheap there and calms it. Below two hundredths of a percent it gains
+    // nothing more.
     static double allowed_error(const Substep& s) {
+        constexpr double k_calm_share = 0.2, k_calm_enough = 2e-4;
+        const double allowed = density_error_tolerance(s.parameters);
         const bool is_calm = std::string_view(s.report.step.limit) == "convergence";
-        return (is_calm ? 0.2 : 1.0) * density_error_tolerance(s.parameters);
+        return is_calm ? std::max(k_calm_share * allowed, std::min(allowed, k_calm_enough)) : allowed;
     }
 
     void remove_divergence(Substep& s) {
