@@ -1,5 +1,5 @@
-// The pressure methods by name. A new one is a file, a line here and two in method.cpp, a word in parameters.def, and its
-// limits in time_step.cpp where they are not those of another.
+// The pressure methods by name. A new one is a file, a line here and two in method.cpp, a word in parameters.def, and
+// its limits in time_step.cpp where they are not those of another.
 #pragma once
 
 #include <memory>
