@@ -18,6 +18,7 @@ from fontana import _core
             {"fluid__pressure_constant": 1.0, "forces__gravity": (0, -5e4, 0), "time__timestep": 5e-4},
             0.0,
         ),
+        ("convergence", {"fluid__method": "dfsph", "fluid__viscosity": 0.0}, 0.0),
         ("frame", {"fluid__pressure_constant": 1e-3, "fluid__viscosity": 0.0, "time__timestep": 1e-4}, 0.0),
     ],
 )
@@ -54,6 +55,12 @@ def test_fixed_substeps(make_simulation, random_block):
 def test_a_viscosity_beyond_the_fixed_step_is_refused_before_the_start(make_simulation):
     simulation = make_simulation("cpu", fluid__viscosity=1e4, time__substeps=10)
     with pytest.raises(_core.BadInput, match="viscosity of 1e\\+04 Pa\\*s is unstable.*use time.substeps"):
+        simulation.check()
+
+
+def test_a_spacing_too_fine_for_the_solve_is_refused_before_the_start(make_simulation):
+    simulation = make_simulation("cpu", fluid__method="dfsph", fluid__viscosity=0.0, fluid__particle_spacing=1.5e-4)
+    with pytest.raises(_core.BadInput, match="dfsph needs 2.78e\\+03 substeps a frame.*max_substeps allows 2000"):
         simulation.check()
 
 

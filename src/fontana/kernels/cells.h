@@ -67,24 +67,4 @@ KERNEL void assign_cells(THREAD_ARG const StepConstants c, GLOBAL const float4* 
     key[i] = cell_key(c, cell_of(c, position[i]));
 }
 
-// How many others are within the support radius: a diagnostic, and the test of the search.
-KERNEL void count_neighbors(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
-                            GLOBAL const uint* RESTRICT cell_start, GLOBAL uint* RESTRICT neighbor_count) {
-    const uint i = THREAD_INDEX;
-    if (i >= c.particle_count) return;
-    const float4 x_i = position[i];
-    const CellCoordinates cell = cell_of(c, x_i);
-    const uint range_count = candidate_range_count(c, cell);
-    uint count = 0u;
-    for (uint k = 0u; k < range_count; ++k) {
-        const Range range = candidate_range(c, cell, k, cell_start);
-        for (uint j = range.begin; j < range.end; ++j) {
-            const float4 x_j = position[j];
-            const float dx = x_i.x - x_j.x, dy = x_i.y - x_j.y, dz = x_i.z - x_j.z;
-            if (j != i && dx * dx + dy * dy + dz * dz < c.support_radius_squared) ++count;
-        }
-    }
-    neighbor_count[i] = count;
-}
-
 #endif

@@ -27,7 +27,7 @@ FN void store_density(const StepConstants c, uint i, float volume, float relativ
     wall_rate[i] = walls.rate;
 }
 
-// Density; `volume_position` = x, y, z, V; `factor` = S, 1 / D (0 where a particle is all but alone); `wall_rate`.
+// Density; `volume_position` = x, y, z, V; `factor` = S, 1 / D (0 where a particle feels no pressure); `wall_rate`.
 KERNEL void spline_density(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
                            GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
                            GLOBAL const float4* RESTRICT volume_position,

@@ -10,7 +10,7 @@ typedef struct StepConstants {
     float support_radius_squared;           // m^2
     float rest_density;                     // kg/m^3
     float pressure_constant;                // m^2/s^2, k of eq. 2.11
-    float minimum_pressure;                 // Pa: 0, or -infinity where negative pressure is allowed
+    float minimum_pressure;                 // of p, and of u: 0, or -infinity where it may be negative
     float viscosity;                        // Pa s
     float surface_tension;                  // N/m
     float poly6_scale;                      // 315 / (64 pi H^9)
@@ -33,12 +33,12 @@ typedef struct StepConstants {
     uint has_force;                              // whether the array of forces is in use
     uint use_grid;                               // 0: all pairs
     uint grid_mask_x, grid_mask_y, grid_mask_z;  // cells along an axis, less one; counts are powers of two
+    uint grid_shift_y, grid_shift_z;             // where y and z stand in a cell's key
     uint use_wendland;                           // instead of the cubic spline
     uint list_capacity;                          // neighbours a particle's list has room for
     uint list_particle_stride;  // the k-th neighbour of particle i is at i * particle stride + k * neighbor stride
     uint list_neighbor_stride;
-    uint list_padding;                // lists are filled up to a multiple of this
-    uint grid_shift_y, grid_shift_z;  // where y and z stand in a cell's key
+    uint list_padding;  // lists are filled up to a multiple of this
 } StepConstants;
 
 // An implicit surface, as the kernels see it: III.7 of the thesis. Units as in fontana_collider.

@@ -3,8 +3,9 @@
 // no boundary particles, no bumps, no neighbours. Spheres and cylinders are taken as their tangent plane, which is
 // exact as the radius grows over the support radius.
 //
-// From half a spacing on the distance counts double, so that a particle that reaches the surface meets the first layer
-// face to face. Otherwise it could sit there, held by the collision alone, of which the pressure solve knows nothing.
+// Nearer than half a spacing the distance counts double, so that a particle that reaches the surface meets the first
+// layer face to face. Otherwise it could sit there, held by the collision alone, of which the pressure solve knows
+// nothing.
 #ifndef FONTANA_WALLS_H
 #define FONTANA_WALLS_H
 

@@ -67,9 +67,14 @@ void check_time_step(const Parameters& p) {
     const fontana_time_step_limits limits = time_step_limits(p, 0.0, 0.0);
     const double frame = frame_duration(p);
     if (p.time_substeps == 0) {
-        const double smallest = std::min({limits.acoustic, limits.viscosity, limits.surface_tension});
+        const double smallest =
+            std::min({limits.acoustic, limits.viscosity, limits.surface_tension, limits.convergence});
         const double needed = std::ceil(frame / smallest);
         if (needed <= p.time_max_substeps) return;
+        if (smallest == limits.convergence)
+            fail(FONTANA_BAD_INPUT, p.fluid_method + " needs " + text_of(needed) +
+                                        " substeps a frame at this particle spacing, and time.max_substeps allows " +
+                                        std::to_string(p.time_max_substeps) + ": use a larger fluid.particle_spacing");
         const char* why = smallest == limits.viscosity         ? "viscosity"
                           : smallest == limits.surface_tension ? "surface tension"
                                                                : "pressure constant";
