@@ -18,6 +18,11 @@
 #pragma OPENCL FP_CONTRACT OFF
 #endif
 #define SQRT(a) sqrt(a)
+#ifdef FONTANA_STRICT
+#define INVERSE_SQRT(a) (1.0f / sqrt(a))
+#else
+#define INVERSE_SQRT(a) rsqrt(a)
+#endif
 #define FLOOR(a) floor(a)
 #define ATOMIC_INCREMENT(p) atomic_inc(p)
 #define MAKE_FLOAT4(x, y, z, w) ((float4)((x), (y), (z), (w)))
@@ -31,6 +36,11 @@
 #define THREAD_ARG
 #define THREAD_INDEX ((uint)(blockIdx.x * blockDim.x + threadIdx.x))
 #define SQRT(a) sqrtf(a)
+#ifdef FONTANA_STRICT
+#define INVERSE_SQRT(a) (1.0f / sqrtf(a))
+#else
+#define INVERSE_SQRT(a) rsqrtf(a)
+#endif
 #define FLOOR(a) floorf(a)
 #define ATOMIC_INCREMENT(p) atomicAdd((p), 1u)
 #define MAKE_FLOAT4(x, y, z, w) make_float4((x), (y), (z), (w))
@@ -47,6 +57,7 @@ typedef unsigned int uint;
 #define THREAD_ARG const uint thread_index,
 #define THREAD_INDEX thread_index
 #define SQRT(a) __builtin_sqrtf(a)
+#define INVERSE_SQRT(a) (1.0f / __builtin_sqrtf(a))
 #define FLOOR(a) __builtin_floorf(a)
 #define MAKE_FLOAT4(x, y, z, w) (float4{(x), (y), (z), (w)})
 
@@ -57,6 +68,7 @@ FN float max_f(float a, float b) { return a > b ? a : b; }
 
 // What a pair of particles is computed in: one neighbour at a time, or, where a backend includes the pair formulas
 // again with vectors of them (backends/cpu/wide_kernels.cpp), several at once.
+#define REAL_FLOOR(a) FLOOR(a)
 #define REAL float
 #define REAL4 float4
 #define REAL_ZERO 0.0f

@@ -96,7 +96,8 @@ double pcisph_delta(const Parameters& p) {
     const double volume = particle_mass(p) / p.fluid_rest_density;
     double squares = 0.0;  // on a lattice the gradients themselves add up to nothing
     for_lattice(spacing, support, [&](double r) {
-        const double gradient = r * static_cast<double>(kernel_gradient(c, static_cast<float>(r)));
+        const double gradient =
+            r * static_cast<double>(kernel_gradient(c, static_cast<float>(r), static_cast<float>(1.0 / r)));
         squares += volume * std::pow(spacing, 3) * gradient * gradient;
     });
     return 0.5 / squares;
