@@ -203,10 +203,9 @@ KERNEL void coarser_matrix(THREAD_ARG const CoarseLevel child, const CoarseLevel
     }
 }
 
-// Whether a particle takes part in this iteration.
-FN bool is_pressed(float inverse_diagonal, float residual, float u) {
-    return inverse_diagonal > 0.0f && (residual > 0.0f || u > 0.0f);
-}
+// Whether a particle takes part in this iteration. One that the matrix does not know must not: it would be corrected
+// beyond measure.
+FN bool is_pressed(float weight, float residual, float u) { return weight > 0.0f && (residual > 0.0f || u > 0.0f); }
 
 // b, and the smoother's first step from zero, z = omega b / D.
 FN void store_right_side(uint index, float sum, GLOBAL const float* RESTRICT stencil, GLOBAL float* RESTRICT b,
@@ -218,7 +217,7 @@ FN void store_right_side(uint index, float sum, GLOBAL const float* RESTRICT ste
 
 // b = P^T r. One thread a coarse cell.
 KERNEL void coarse_restrict(THREAD_ARG const StepConstants c, const CoarseLevel level,
-                            GLOBAL const uint* RESTRICT cell_start, GLOBAL const float4* RESTRICT factor,
+                            GLOBAL const uint* RESTRICT cell_start, GLOBAL const float* RESTRICT weight,
                             GLOBAL const float* RESTRICT residual, GLOBAL const float* RESTRICT u,
                             GLOBAL const float* RESTRICT stencil, GLOBAL float* RESTRICT b,
                             GLOBAL float* RESTRICT guess) {
@@ -231,7 +230,7 @@ KERNEL void coarse_restrict(THREAD_ARG const StepConstants c, const CoarseLevel 
         const uint begin = cell_start[key], end = cell_start[key + 1u];
         if (end - begin < COARSE_LEAST) continue;
         for (uint i = begin; i < end; ++i)
-            if (is_pressed(factor[i].w, residual[i], u[i])) sum += residual[i];
+            if (is_pressed(weight[i], residual[i], u[i])) sum += residual[i];
     }
     store_right_side(index, sum, stencil, b, guess);
 }

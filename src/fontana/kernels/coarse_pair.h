@@ -22,8 +22,7 @@ FN CoarseGradient add_coarse_gradient(CoarseGradient a, const StepConstants c, R
     const REAL g = weight * kernel_gradient(c, pair.r, pair.inverse_r), one = REAL_ZERO + 1.0f;
     const REAL gx = g * pair.dx, gy = g * pair.dy, gz = g * pair.dz;
     const float per_metre = 0.5f * c.inverse_cell_size;
-    const float home_x = FLOOR(x_i.x * per_metre), home_y = FLOOR(x_i.y * per_metre),
-                home_z = FLOOR(x_i.z * per_metre);
+    const float home_x = FLOOR(x_i.x * per_metre), home_y = FLOOR(x_i.y * per_metre), home_z = FLOOR(x_i.z * per_metre);
     const REAL octant = (REAL_FLOOR(x_j.x * per_metre) != home_x ? one : REAL_ZERO) +
                         (REAL_FLOOR(x_j.y * per_metre) != home_y ? 2.0f * one : REAL_ZERO) +
                         (REAL_FLOOR(x_j.z * per_metre) != home_z ? 4.0f * one : REAL_ZERO);

@@ -53,13 +53,13 @@ KERNEL void pressure_residual(THREAD_ARG const StepConstants c, GLOBAL const flo
 KERNEL void relax(THREAD_ARG const StepConstants c, const float relaxation, const uint with_coarse,
                   const CoarseLevel level, GLOBAL const float4* RESTRICT volume_position,
                   GLOBAL const uint* RESTRICT cell_start, GLOBAL const float4* RESTRICT factor,
-                  GLOBAL const float* RESTRICT residual, GLOBAL const float* RESTRICT z,
-                  GLOBAL const float* RESTRICT u, GLOBAL float* RESTRICT step) {
+                  GLOBAL const float* RESTRICT weight, GLOBAL const float* RESTRICT residual,
+                  GLOBAL const float* RESTRICT z, GLOBAL const float* RESTRICT u, GLOBAL float* RESTRICT step) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
     const float u_i = u[i], inverse_diagonal = factor[i].w, r = residual[i];
     float correction = inverse_diagonal * r;
-    if (with_coarse && is_pressed(inverse_diagonal, r, u_i))
+    if (with_coarse && is_pressed(weight[i], r, u_i))
         correction += coarse_correction(c, level, volume_position[i], cell_start, z);
     step[i] = inverse_diagonal > 0.0f ? max_f(0.0f, u_i + relaxation * correction) - u_i : -u_i;
 }
@@ -68,8 +68,8 @@ KERNEL void relax(THREAD_ARG const StepConstants c, const float relaxation, cons
 // iteration's, step_1 and step_2 those of the one and two before.
 KERNEL void anderson_sums(THREAD_ARG const uint count, const uint lane_count, GLOBAL const float4* RESTRICT factor,
                           GLOBAL const float* RESTRICT residual, GLOBAL const float* RESTRICT u,
-                          GLOBAL const float* RESTRICT step, GLOBAL const float* RESTRICT step_1, GLOBAL const float* RESTRICT step_2,
-                          GLOBAL float* RESTRICT sums) {
+                          GLOBAL const float* RESTRICT step, GLOBAL const float* RESTRICT step_1,
+                          GLOBAL const float* RESTRICT step_2, GLOBAL float* RESTRICT sums) {
     const uint lane = THREAD_INDEX;
     if (lane >= lane_count) return;
     SolveSums s = zero_sums();

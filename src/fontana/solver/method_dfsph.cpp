@@ -1,6 +1,7 @@
 // DFSPH: Bender and Koschier 2017. Velocities are made free of divergence, forces act, and the pressure that keeps the
 // density is found by the solve of kernels/pressure_solve.h, warm-started with the whole of the last one.
 #include <algorithm>
+#include <limits>
 
 #include "solver/coarse_correction.h"
 #include "solver/constants.h"
@@ -13,6 +14,7 @@ namespace {
 constexpr float k_jacobi_relaxation = 0.5f;  // safe up to 0.7: the largest eigenvalue of D^-1 K is below 2.85
 constexpr float k_anderson_relaxation = 0.65f;
 constexpr float k_coarse_relaxation = 0.5f;
+constexpr float k_worse = 4.0f;
 constexpr std::uint32_t k_least_iterations = 2;
 constexpr std::uint32_t k_lanes = 1024, k_folded_lanes = 32;
 constexpr std::size_t k_sums = 6;  // floats a lane, as in kernels/anderson.h
@@ -67,14 +69,18 @@ class Dfsph : public Method {
         // A GPU would rather run an iteration too many, which changes nothing, than wait for an answer after each.
         const std::uint32_t poll = backend_.device().is_gpu ? 2 : 1;
         with_coarse_ = solver == "multilevel" && s.constants.use_grid;  // without the grid there are no cells to merge
-        if (with_coarse_) coarse_.prepare(s, operators_, u(1), *residual_);
+        if (with_coarse_) coarse_.prepare(s, operators_, u(1));
         SolveState state{};
+        float first_residual = std::numeric_limits<float>::infinity();
         for (std::uint32_t k = 1; k <= most; ++k) {
             iterate(s, k, accelerated);
             pressure_ = &u(k + 1);
-            if (k < k_least_iterations || (k % poll != 0 && k != most)) continue;
+            if (k % poll != 0 && k != most) continue;
             backend_.read(*state_, &state, sizeof state);
             if (state.done > 0.0f) break;
+            // A correction that makes it worse is left off for the rest of the solve.
+            if (k <= poll) first_residual = state.residual;
+            if (state.residual > k_worse * first_residual) with_coarse_ = false;
         }
         s.report.iterations = static_cast<std::uint32_t>(state.iterations);
         s.report.converged = state.done > 0.0f;
@@ -94,12 +100,12 @@ class Dfsph : public Method {
         backend_.launch(Kernel::pressure_residual, count,
                         {s.constants, operators_.gradient(), operators_.list().count(), operators_.list().list(),
                          operators_.volume_position(), operators_.factor(), operators_.rate(), *residual_});
-        if (with_coarse_) coarse_.solve(s, operators_, *residual_, u(k));
+        if (with_coarse_) coarse_.solve(s, *residual_, u(k));
         backend_.launch(Kernel::relax, count,
                         {s.constants, relaxation, std::uint32_t{with_coarse_},
                          with_coarse_ ? coarse_.finest() : CoarseLevel{}, operators_.volume_position(),
-                         s.neighborhood.cell_start(), operators_.factor(), *residual_,
-                         with_coarse_ ? coarse_.correction() : *residual_, u(k), step(k)});
+                         s.neighborhood.cell_start(), operators_.factor(), with_coarse_ ? coarse_.weight() : *residual_,
+                         *residual_, with_coarse_ ? coarse_.correction() : *residual_, u(k), step(k)});
         backend_.launch(Kernel::anderson_sums, lanes,
                         {n, lanes, operators_.factor(), *residual_, u(k), step(k), step(k + 2), step(k + 1), *sums_});
         backend_.launch(Kernel::fold_sums, folded, {lanes, folded, *sums_, *folded_sums_});

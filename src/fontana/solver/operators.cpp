@@ -24,10 +24,10 @@ void Operators::begin(Substep& s) {
     list_.build(s.particles, s.neighborhood, s.constants);
     s.place_walls();
     backend_.launch(Kernel::pack_volume, count, {s.constants, s.particles.position(), *volume_position_});
-    backend_.launch(Kernel::sum_neighborhood, count,
-                    {s.constants, s.particles.position(), s.particles.velocity(), list_.count(), list_.list(),
-                     *volume_position_, s.colliders.buffer(), s.particles.density(), *factor_, *wall_rate_, *rate_,
-                     *gradient_});
+    backend_.launch(
+        Kernel::sum_neighborhood, count,
+        {s.constants, s.particles.position(), s.particles.velocity(), list_.count(), list_.list(), *volume_position_,
+         s.colliders.buffer(), s.particles.density(), *factor_, *wall_rate_, *rate_, *gradient_});
 }
 
 void Operators::compute_rate(Substep& s) {

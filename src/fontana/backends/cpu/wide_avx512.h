@@ -1,5 +1,5 @@
-// Sixteen floats at once (AVX-512 F), with just the operations that the pair formulas and their loops need; as wide_avx2.h,
-// which says what each does.
+// Sixteen floats at once (AVX-512 F), with just the operations that the pair formulas and their loops need; wide_avx2.h
+// says what each does.
 #pragma once
 
 #include <immintrin.h>
@@ -64,9 +64,8 @@ inline Vec4 load(const float4* a) {
 }
 
 inline Vec4 gather(const float4* a, const uint* k) {
-    return transpose(
-        rows(a[k[0]], a[k[4]], a[k[8]], a[k[12]]), rows(a[k[1]], a[k[5]], a[k[9]], a[k[13]]),
-        rows(a[k[2]], a[k[6]], a[k[10]], a[k[14]]), rows(a[k[3]], a[k[7]], a[k[11]], a[k[15]]));
+    return transpose(rows(a[k[0]], a[k[4]], a[k[8]], a[k[12]]), rows(a[k[1]], a[k[5]], a[k[9]], a[k[13]]),
+                     rows(a[k[2]], a[k[6]], a[k[10]], a[k[14]]), rows(a[k[3]], a[k[7]], a[k[11]], a[k[15]]));
 }
 
 inline Vec gather(const float* a, const uint* index) { return _mm512_i32gather_ps(_mm512_loadu_si512(index), a, 4); }

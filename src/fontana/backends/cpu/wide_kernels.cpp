@@ -1,6 +1,6 @@
-// The neighbour loops of the fast arithmetic, a vector of neighbours at once. Formulas are those of kernels/: pair.h and
-// others are included a second time here, with vectors for REAL. Only the loops are this file's own, and each is tested
-// against the plain one. Compiled once for each instruction set; FONTANA_WIDE is its name.
+// The neighbour loops of the fast arithmetic, a vector of neighbours at once. Formulas are those of kernels/: pair.h
+// and others are included a second time here, with vectors for REAL. Only the loops are this file's own, and each is
+// tested against the plain one. Compiled once for each instruction set; FONTANA_WIDE is its name.
 //
 // Lists of neighbours are padded with the particle itself, which adds nothing to a gradient (x_ii = 0).
 #include "backends/cpu/cpu_kernels.h"
@@ -168,7 +168,8 @@ void build_neighbor_list(uint begin, uint end, const StepConstants& c, const flo
         uint count = 0;
         candidates.for_all(x_i, [&](uint k) {
             const uint* const index = candidates.index(k);
-            uint hits = less_mask(candidates.distance_squared(x_i, k), c.support_radius_squared) & ~equal_mask(index, i);
+            uint hits =
+                less_mask(candidates.distance_squared(x_i, k), c.support_radius_squared) & ~equal_mask(index, i);
             if (count + width <= c.list_capacity)
                 count += compress_store(hits, index, mine + count);
             else
@@ -315,7 +316,8 @@ void anderson_sums(uint begin, uint end, const uint& count, const uint& lane_cou
             const uint beyond = i + width > count ? i + width - count : 0;  // of the last row
             const uint within = ((1u << width) - 1u) >> beyond;
             s = add_to_sums(s, load(factor + i).w, keep(within, load(residual + i)), load(u + i),
-                            keep(within, load(step + i)), keep(within, load(step_1 + i)), keep(within, load(step_2 + i)));
+                            keep(within, load(step + i)), keep(within, load(step_1 + i)),
+                            keep(within, load(step_2 + i)));
         }
         store(sums + lane, s.residual);
         store(sums + lane_count + lane, s.m00);
@@ -359,9 +361,11 @@ KernelLoop FONTANA_WIDE_LOOP(const char* kernel) {
         const char* name;
         KernelLoop run;
     } table[] = {
-#define WIDE(function) {#function, &Loop<decltype(&::function), decltype(&FONTANA_WIDE::function)>::run<&FONTANA_WIDE::function>},
+#define WIDE(function) \
+    {#function, &Loop<decltype(&::function), decltype(&FONTANA_WIDE::function)>::run<&FONTANA_WIDE::function>},
         WIDE(density) WIDE(fluid_force) WIDE(build_neighbor_list) WIDE(sum_neighborhood) WIDE(density_rate)
-            WIDE(pressure_residual) WIDE(pressure_gradient) WIDE(correct_pressure) WIDE(anderson_sums) WIDE(coarse_products)
+            WIDE(pressure_residual) WIDE(pressure_gradient) WIDE(correct_pressure) WIDE(anderson_sums)
+                WIDE(coarse_products)
 #undef WIDE
     };
     for (const auto& row : table)
