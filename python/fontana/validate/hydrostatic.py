@@ -1,0 +1,90 @@
+"""A column of water at rest: the pressure on its floor is its weight, and nothing moves."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fontana.validate._case import FULL, SMALL, Case, Figure, Outcome, Stage, curve
+from fontana.validate._plots import EXACT, MEASURED, plot
+from fontana.validate._scenes import tank
+
+DENSITY, GRAVITY, DEPTH, WIDTH = 1000.0, 9.81, 1.0, 0.5
+SETTLING, FRAME_RATE = 3.0, 50.0  # s, 1/s
+SAMPLED_SUBSTEPS = 400
+SPEED_UNIT = np.sqrt(GRAVITY * DEPTH)
+
+
+def scene(spacing: float, width: float) -> dict:
+    """The viscosity is such that what the start stirs up dies out in seconds."""
+    return {
+        "fluid": {"method": "dfsph", "particle_spacing": spacing, "viscosity": 10.0, "rest_density": DENSITY},
+        "forces": {"gravity": [0.0, -GRAVITY, 0.0]},
+        "solver": {"quality": "final"},
+        "time": {"frame_rate": FRAME_RATE},
+        "emitters": [{"type": "block", "centre": [width / 2, DEPTH / 2, width / 2], "size": [width, DEPTH, width]}],
+        "colliders": tank(width, width),
+    }
+
+
+def measure(stage: Stage, resolution: int) -> Outcome:
+    """Three seconds to settle; then every substep is read, since the pressure swings about its mean.
+
+    The mean is taken where no wall is within the support radius, and the water below is added by its weight: particles
+    next to a wall carry more pressure than the water there, since a wall pushes with theirs alone.
+    """
+    spacing = DEPTH / resolution
+    width = round(WIDTH / spacing) * spacing
+    simulation = stage.simulation(scene(spacing, width))
+    settling = list(_settle(stage, simulation))
+    simulation.set("time.timestep", settling[-1].report.dt_max)
+    simulation.set("time.substeps", 1)
+    heights, pressures, speeds = [], [], []
+    for frame in stage.frames(simulation, SAMPLED_SUBSTEPS, "sampling"):
+        in_bulk = _is_in_bulk(frame.position, width, spacing)
+        heights.append(frame.position[in_bulk, 1])
+        pressures.append(frame.pressure[in_bulk])
+        speeds.append(_root_mean_square(frame.velocity))
+    height, pressure = np.concatenate(heights).astype(float), np.concatenate(pressures).astype(float)
+    slope = np.polyfit(height, pressure, 1)[0]
+    at_floor = (pressure + DENSITY * GRAVITY * height).mean()
+    weight = DENSITY * GRAVITY * DEPTH
+    means = [np.mean(values) for values in pressures]
+    figures = [
+        Figure("pressure on the floor, off from the weight above", 100 * (at_floor / weight - 1), 2.0),
+        Figure("residual speed, root mean square, of sqrt(g H)", 100 * np.mean(speeds) / SPEED_UNIT, 1.0),
+        Figure("residual speed of the fastest, of sqrt(g H)", 100 * frame.report.max_speed / SPEED_UNIT),
+        Figure("pressure gradient, off from density g", 100 * (-slope / (DENSITY * GRAVITY) - 1)),
+        Figure("centre of mass, off from the middle", 100 * (frame.report.centre_of_mass[1] / (DEPTH / 2) - 1), 2.0),
+        Figure("pressure from substep to substep, standard deviation", 100 * np.std(means) / np.mean(means)),
+    ]
+    return Outcome(figures, _curves(height, pressure, spacing, weight))
+
+
+def _settle(stage: Stage, simulation: object) -> list:
+    return list(stage.frames(simulation, round(SETTLING * FRAME_RATE), "settling"))
+
+
+def _is_in_bulk(position: np.ndarray, width: float, spacing: float) -> np.ndarray:
+    support_radius = 2 * spacing
+    sides = np.abs(position[:, [0, 2]] - width / 2).max(axis=1) < width / 2 - support_radius
+    return sides & (position[:, 1] > support_radius) & (position[:, 1] < 0.8 * DEPTH)
+
+
+def _root_mean_square(velocity: np.ndarray) -> float:
+    return float(np.sqrt((velocity.astype(float) ** 2).sum(axis=1).mean()))
+
+
+def _curves(height: np.ndarray, pressure: np.ndarray, spacing: float, weight: float) -> dict:
+    bins = np.round(height / spacing).astype(int)
+    rows = [(height[bins == k].mean(), pressure[bins == k].mean()) for k in np.unique(bins)]
+    middle, mean = np.array(rows).T
+    return {"mean pressure": curve(mean / weight, middle), "density g (H - y)": curve([1.0, 0.0], [0.0, DEPTH])}
+
+
+def draw(axes: object, curves: dict) -> None:
+    plot(axes, curves, "density g (H - y)", EXACT)
+    plot(axes, curves, "mean pressure", MEASURED | {"marker": "o", "markersize": 4, "linestyle": ""})
+    axes.set(xlabel="pressure over density g H", ylabel="height, m")
+
+
+CASE = Case("Hydrostatic column", {SMALL: 16, FULL: 32}, measure, draw)
