@@ -70,8 +70,8 @@ def run_lines(result: dict) -> list[str]:
     particles = max(run["particles"] for run in result["runs"])
     substeps = sum(run["substeps"] for run in result["runs"])
     unconverged = sum(run["unconverged"] for run in result["runs"])
-    resolution = result["settings"]["resolution"]
-    text = f"`fontana validate {result['case']} --size {result['settings']['size']}`: {resolution} spacings to the length, "
+    settings = result["settings"]
+    text = f"`fontana validate {result['case']} --size {settings['size']}`, {settings['resolution']} spacings to the length: "
     return [text + f"up to {particles:,} particles, {substeps:,} substeps, {unconverged} of them not converged."]
 
 
