@@ -71,8 +71,9 @@ def run_lines(result: dict) -> list[str]:
     substeps = sum(run["substeps"] for run in result["runs"])
     unconverged = sum(run["unconverged"] for run in result["runs"])
     settings = result["settings"]
-    text = f"`fontana validate {result['case']} --size {settings['size']}`, {settings['resolution']} spacings to the length: "
-    return [text + f"up to {particles:,} particles, {substeps:,} substeps, {unconverged} of them not converged."]
+    command = f"`fontana validate {result['case']} --size {settings['size']}`"
+    work = f"up to {particles:,} particles, {substeps:,} substeps, {unconverged} of them not converged"
+    return [f"{command}: {settings['resolution']} spacings to the length, {work}."]
 
 
 def picture_name(result: dict) -> str:

@@ -38,22 +38,27 @@ def measure(stage: Stage, resolution: int) -> Outcome:
     settling = _settle(stage, simulation, "settling")
     simulation.set("time.timestep", settling[-1].report.dt_max)
     simulation.set("time.substeps", 1)
-    heights, pressures, speeds = [], [], []
+    heights, pressures, speeds, lowest = [], [], [], []
     for frame in stage.frames(simulation, SAMPLED_SUBSTEPS, "sampling"):
         in_bulk = _is_in_bulk(frame.position, width, spacing)
         heights.append(frame.position[in_bulk, 1])
         pressures.append(frame.pressure[in_bulk])
         speeds.append(_root_mean_square(frame.velocity))
+        at_floor = frame.position[:, 1] < spacing
+        lowest.append(
+            frame.pressure[at_floor].mean() / (DENSITY * GRAVITY * (DEPTH - frame.position[at_floor, 1].mean()))
+        )
     height, pressure = np.concatenate(heights).astype(float), np.concatenate(pressures).astype(float)
     slope = np.polyfit(height, pressure, 1)[0]
-    at_floor = (pressure + DENSITY * GRAVITY * height).mean()
+    followed = (pressure + DENSITY * GRAVITY * height).mean()
     weight = DENSITY * GRAVITY * DEPTH
     means = [np.mean(values) for values in pressures]
     figures = [
-        Figure("pressure on the floor, off from the weight above", 100 * (at_floor / weight - 1), 2.0),
+        Figure("pressure on the floor, off from the weight above", 100 * (followed / weight - 1), 2.0),
         Figure("residual speed, root mean square, of sqrt(g H)", 100 * np.mean(speeds) / SPEED_UNIT, 1.0),
         Figure("the same with quality good", 100 * _good_speed(stage, spacing, width) / SPEED_UNIT),
         Figure("residual speed of the fastest, of sqrt(g H)", 100 * frame.report.max_speed / SPEED_UNIT),
+        Figure("pressure of the particles at the floor, off from the water's", 100 * (np.mean(lowest) - 1)),
         Figure("pressure gradient, off from density g", 100 * (-slope / (DENSITY * GRAVITY) - 1)),
         Figure("centre of mass, off from the middle", 100 * (frame.report.centre_of_mass[1] / (DEPTH / 2) - 1), 2.0),
         Figure("pressure from substep to substep, standard deviation", 100 * np.std(means) / np.mean(means)),
