@@ -6,9 +6,10 @@ python tools/make_validation_docs.py
 
 import importlib
 import json
-import shutil
 import sys
 from pathlib import Path
+
+from fontana.validate import find_case, publish_picture
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "benchmarks" / "results" / "validate"
@@ -28,7 +29,7 @@ def main() -> None:
     results = load()
     PAGE.write_text(page(results), encoding="utf-8")
     for result in results:
-        shutil.copyfile(RESULTS / f"{result['case']}.png", PICTURES / picture_name(result))
+        publish_picture(find_case(result["case"]), result, PICTURES / picture_name(result))
     print(f"written: {PAGE.relative_to(ROOT)} and {len(results)} pictures in {PICTURES.relative_to(ROOT)}")
 
 

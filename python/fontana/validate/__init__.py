@@ -6,7 +6,8 @@ better, and one without a limit is reported only.
 """
 
 from fontana.validate._case import SIZES, Case, Figure, Outcome, Stage
+from fontana.validate._plots import publish_picture
 from fontana.validate._registry import case_names, find_case
 from fontana.validate._session import Session
 
-__all__ = ["SIZES", "Case", "Figure", "Outcome", "Session", "Stage", "case_names", "find_case"]
+__all__ = ["SIZES", "Case", "Figure", "Outcome", "Session", "Stage", "case_names", "find_case", "publish_picture"]

@@ -53,7 +53,7 @@ class Session:
         results |= outcome.as_json() | {"runs": stage.runs}
         note_end(results)
         publish_json(self._path(name), results)
-        publish_picture(case, results["curves"], _remark(results), self._path(name).with_suffix(".png"))
+        publish_picture(case, results, self._path(name).with_suffix(".png"))
         return results
 
     def _finished(self, name: str, case: Case) -> dict | None:
@@ -69,9 +69,3 @@ class Session:
 
     def _path(self, name: str) -> Path:
         return self.out / f"{name}.json"
-
-
-def _remark(results: dict) -> str:
-    most = max(run["particles"] for run in results["runs"])
-    methods = ", ".join(sorted({run["method"] for run in results["runs"]}))
-    return f"{methods}; {results['settings']['resolution']} spacings to the length; up to {most:,} particles"
