@@ -115,10 +115,10 @@ def test_the_command_lists_and_refuses(tmp_path):
 
 
 def test_a_figure_beyond_its_limit_is_a_failure(tmp_path):
-    """The thesis's springy gas is no incompressible drop."""
-    done = fontana("validate", "elliptical-drop", "--method", "mueller", folder=tmp_path, code=70)
+    """The thesis's springy fluid runs ahead of water."""
+    done = fontana("validate", "koshizuka-oka", "--method", "mueller", folder=tmp_path, code=70)
     assert "BEYOND" in done.stdout
-    assert "beyond the limit: elliptical-drop: semi-minor axis" in done.stderr
+    assert "beyond the limit: koshizuka-oka: tip, mean error" in done.stderr
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")

@@ -50,4 +50,4 @@ def draw(axes: object, curves: dict) -> None:
     axes.set(xlabel="spacing over side or radius", ylabel="relative error", xscale="log", yscale="log")
 
 
-CASE = Case("Convergence with the spacing", {SMALL: 18, FULL: 24}, measure, draw)
+CASE = Case("Convergence with the spacing", {SMALL: 14, FULL: 24}, measure, draw)
