@@ -48,6 +48,12 @@ const KernelFacts& kernel_facts(Kernel kernel) {
     return facts[static_cast<int>(kernel)];
 }
 
+const KernelFacts* find_kernel_facts(const std::string& name) {
+    for (int k = 0; k < static_cast<int>(Kernel::count); ++k)
+        if (const KernelFacts& facts = kernel_facts(static_cast<Kernel>(k)); name == facts.name) return &facts;
+    return nullptr;
+}
+
 std::vector<DeviceInfo> list_devices() {
     std::vector<DeviceInfo> devices;
     for (const BackendEntry& entry : backends())
