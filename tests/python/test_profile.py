@@ -1,4 +1,4 @@
-"""`fontana run --profile`: the figures of a real run follow from its launches and from what a kernel is said to cost."""
+"""`fontana run --profile`: its figures follow from the launches of a real run and from the costs a kernel states."""
 
 from __future__ import annotations
 

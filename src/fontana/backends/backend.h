@@ -101,6 +101,7 @@ struct ProfileRow {
 struct BackendOptions {
     bool strict = false;   // no contracted or reassociated arithmetic
     bool profile = false;  // time every launch
+    bool tiles = false;    // opencl: candidates through local memory (backends/gpu/tiles.inl)
     int threads = 0;       // cpu: 0 is one per core
     int device = 0;        // index within the backend
 };
