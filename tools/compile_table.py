@@ -29,7 +29,12 @@ registers of a thread. SPIR-V has none yet. Memory of a work-group, scratch memo
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=ROOT / "benchmarks/results/local")
 @click.option("--strict", is_flag=True, help="A missing compiler and a kernel with scratch memory are failures.")
 def command(out: Path, strict: bool) -> None:
-    results = compile_all()
+    results = {
+        "benchmark": "compile_table",
+        **bench.describe_conditions([Path(sys.executable).name, "tools/compile_table.py", *sys.argv[1:]]),
+        **compile_all(),
+    }
+    bench.note_end(results)
     bench.publish_json(out / "compile_table.json", results)
     text = markdown(results)
     (out / "compile_table.md").write_text(text)
@@ -43,13 +48,7 @@ def command(out: Path, strict: bool) -> None:
 def compile_all() -> dict:
     """The results of every vendor's compiler that is here. Raises CompilerError where one refuses the kernels."""
     text = source.kernel_text()
-    results = {
-        "benchmark": "compile_table",
-        **bench.describe_conditions([Path(sys.executable).name, "tools/compile_table.py", *sys.argv[1:]]),
-        "kernels": source.kernel_names(text),
-        "missing": {},
-        "rows": [],
-    }
+    results: dict = {"kernels": source.kernel_names(text), "missing": {}, "rows": []}
     for name in VENDORS:
         vendor = module_of(name)
         if vendor is None:
@@ -59,7 +58,6 @@ def compile_all() -> dict:
             results["missing"][name] = reason
         else:
             results["rows"] += vendor.rows(text, vendor.TARGETS)
-    bench.note_end(results)
     return results
 
 
@@ -89,19 +87,28 @@ def complaints(results: dict, strict: bool) -> list[str]:
 
 
 def markdown(results: dict) -> str:
-    """A row a kernel, a column a target."""
+    """The page of a whole run of this tool."""
+    commit = (results["commit"] or {}).get("hash", "unknown")
+    head = [
+        "# What the kernels need on GPUs that are not here",
+        "",
+        f"Compiled, not run. By `{results['command']}` at commit `{commit}`.",
+        "",
+    ]
+    return "\n".join([*head, *table(results)]) + "\n"
+
+
+def table(results: dict) -> list[str]:
+    """Lines of Markdown: the compilers, then a row a kernel and a column a target."""
     targets = list(dict.fromkeys(row["target"] for row in results["rows"]))
     cells = {(row["kernel"], row["target"]): cell(row) for row in results["rows"]}
     compilers = {row["target"]: row["compiler"] for row in results["rows"]}
-    lines = [
-        "# What the kernels need on GPUs that are not here",
-        "",
-        f"Compiled, not run. By `{results['command']}` at commit `{(results['commit'] or {}).get('hash', 'unknown')}`.",
-        "",
+    return [
         *(f"- {target}: {compilers[target]}" for target in targets),
         *(f"- no {name}: {reason}" for name, reason in results["missing"].items()),
         "",
-        LEGEND,
+        *LEGEND.splitlines(),
+        "",
         f"| kernel | {' | '.join(targets)} |",
         f"|---|{'---|' * len(targets)}",
         *(
@@ -109,7 +116,6 @@ def markdown(results: dict) -> str:
             for kernel in results["kernels"]
         ),
     ]
-    return "\n".join(lines) + "\n"
 
 
 def cell(row: dict) -> str:
