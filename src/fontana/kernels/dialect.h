@@ -19,6 +19,7 @@
 #endif
 #define SQRT(a) sqrt(a)
 #define FLOOR(a) floor(a)
+#define LOCAL_POINTER __local
 #define ATOMIC_MINIMUM(p, value) atomic_min((p), (value))
 #define ATOMIC_MAXIMUM(p, value) atomic_max((p), (value))
 #define ATOMIC_ADD(p, value) atomic_add((p), (value))
@@ -40,6 +41,7 @@
 #define THREAD_INDEX ((uint)(blockIdx.x * blockDim.x + threadIdx.x))
 #define SQRT(a) sqrtf(a)
 #define FLOOR(a) floorf(a)
+#define LOCAL_POINTER
 #define ATOMIC_MINIMUM(p, value) atomicMin((p), (value))
 #define ATOMIC_MAXIMUM(p, value) atomicMax((p), (value))
 #define ATOMIC_ADD(p, value) atomicAdd((p), (value))

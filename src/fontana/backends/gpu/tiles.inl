@@ -16,7 +16,7 @@
 #define COVER_ASKED 2
 #define COVER_SIZE 3
 
-FN void begin_cover(LOCAL uint* cover) {
+FN void begin_cover(LOCAL_POINTER uint* cover) {
     BARRIER();  // everyone has read the former one
     if (LANE_INDEX == 0u) {
         cover[COVER_BEGIN] = 0xffffffffu;
@@ -27,7 +27,7 @@ FN void begin_cover(LOCAL uint* cover) {
 }
 
 // How many ranges the member of a group with the most of them asks for.
-FN uint most_ranges(LOCAL uint* cover, uint range_count) {
+FN uint most_ranges(LOCAL_POINTER uint* cover, uint range_count) {
     begin_cover(cover);
     ATOMIC_MAXIMUM(&cover[COVER_END], range_count);
     BARRIER();
@@ -43,7 +43,7 @@ FN Range own_range(const StepConstants c, CellCoordinates cell, uint k, uint ran
 }
 
 // The range that covers all of the group's; empty where a tile would not pay.
-FN Range covering_range(LOCAL uint* cover, Range own) {
+FN Range covering_range(LOCAL_POINTER uint* cover, Range own) {
     begin_cover(cover);
     if (own.begin < own.end) {
         ATOMIC_MINIMUM(&cover[COVER_BEGIN], own.begin);
