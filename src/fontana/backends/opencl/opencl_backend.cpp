@@ -10,6 +10,9 @@
 namespace fontana {
 namespace {
 
+// Whether tiles.inl has a loop of its own for the kernel.
+bool has_tiles(const std::string& kernel) { return kernel == "density" || kernel == "fluid_force"; }
+
 class OpenClBackend : public Backend {
  public:
     OpenClBackend(OpenClDevice device, const BackendOptions& options)
@@ -18,7 +21,8 @@ class OpenClBackend : public Backend {
           sort_(queue_.device(), program_.get()) {
         for (int i = 0; i < static_cast<int>(Kernel::count); ++i) {
             const char* name = kernel_facts(static_cast<Kernel>(i)).name;
-            kernels_.emplace_back(queue_.device(), program_.get(), name, name);
+            const std::string function = options.tiles && has_tiles(name) ? std::string(name) + "_tiles" : name;
+            kernels_.emplace_back(queue_.device(), program_.get(), function, name);
         }
     }
 

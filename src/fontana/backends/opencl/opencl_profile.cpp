@@ -7,9 +7,10 @@ constexpr std::size_t k_most_pending_events = 1024;
 
 }  // namespace
 
-void LaunchProfile::add(const std::string& label, OpenClEvent event) {
+void LaunchProfile::add(const std::string& label, std::uint64_t elements, OpenClEvent event) {
     const std::size_t row = row_of(label);
     ++rows_[row].launches;
+    rows_[row].elements += elements;
     pending_.emplace_back(row, std::move(event));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,7 +16,7 @@ namespace fontana {
 // wait for every kernel.
 class LaunchProfile {
  public:
-    void add(const std::string& label, OpenClEvent event);
+    void add(const std::string& label, std::uint64_t elements, OpenClEvent event);
     // Whether so many events wait that they should be collected before more are added.
     bool is_full() const;
     // Reads the times of the events; all of them must have finished. Returns the first error.
