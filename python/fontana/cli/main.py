@@ -12,6 +12,7 @@ import click
 from fontana import _core
 from fontana.cli import exit_codes
 from fontana.cli.bench import bench
+from fontana.cli.files import export, mesh
 from fontana.cli.information import devices, explain, fluids, scenes, schema
 from fontana.cli.run import resume, run
 from fontana.cli.verify import verify
@@ -35,7 +36,7 @@ def cli() -> None:
     pass
 
 
-for command in (run, resume, devices, verify, bench, scenes, schema, explain, fluids):
+for command in (run, resume, mesh, export, devices, verify, bench, scenes, schema, explain, fluids):
     cli.add_command(command)
 
 

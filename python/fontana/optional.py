@@ -1,0 +1,17 @@
+"""Packages that only some commands need, each in an extra of pyproject.toml."""
+
+from __future__ import annotations
+
+import importlib
+from types import ModuleType
+
+from fontana import _core
+
+
+def require(module: str, extra: str, purpose: str) -> ModuleType:
+    """The module, imported. Raises BadInput with the line that installs it."""
+    try:
+        return importlib.import_module(module)
+    except ImportError as error:
+        package = module.partition(".")[0]
+        raise _core.BadInput(f"{purpose} needs {package}, which is not here: pip install 'fontana[{extra}]'") from error
