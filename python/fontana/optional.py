@@ -8,10 +8,9 @@ from types import ModuleType
 from fontana import _core
 
 
-def require(module: str, extra: str, purpose: str) -> ModuleType:
-    """The module, imported. Raises BadInput with the line that installs it."""
+def require(module: str, package: str, purpose: str) -> ModuleType:
+    """The module, imported. Raises BadInput with the line that installs its package."""
     try:
         return importlib.import_module(module)
     except ImportError as error:
-        package = module.partition(".")[0]
-        raise _core.BadInput(f"{purpose} needs {package}, which is not here: pip install 'fontana[{extra}]'") from error
+        raise _core.BadInput(f"{purpose} needs {package}, which is not here: pip install {package}") from error

@@ -46,8 +46,8 @@ class Mesh:
 
 def check_installed() -> None:
     """Raises BadInput with the line that installs what is missing."""
-    require("pysplashsurf", "surface", "a surface")
-    require("scipy.sparse.csgraph", "surface", "a surface")
+    require("pysplashsurf", "pysplashsurf", "a surface")
+    require("scipy.sparse.csgraph", "scipy", "a surface")
 
 
 def reconstruct(position: np.ndarray, velocity: np.ndarray, radius: float, settings: SurfaceSettings) -> Mesh:
@@ -55,7 +55,7 @@ def reconstruct(position: np.ndarray, velocity: np.ndarray, radius: float, setti
 
     Raises BadInput where splashsurf is not installed or the settings do not fit.
     """
-    splashsurf = require("pysplashsurf", "surface", "a surface")
+    splashsurf = require("pysplashsurf", "pysplashsurf", "a surface")
     if len(position) == 0:
         return _EMPTY
     # Around the middle of the fluid floats are finest, however far that is from the origin.
@@ -103,7 +103,7 @@ def _is_in_a_speck(vertices: np.ndarray, triangles: np.ndarray, size: float) -> 
     Smoothing shrinks small hollows inside the fluid to points of no area; the surface of a lone particle is twice its
     radius across.
     """
-    graph = require("scipy.sparse.csgraph", "surface", "a surface")
+    graph = require("scipy.sparse.csgraph", "scipy", "a surface")
     from scipy.sparse import coo_array
 
     starts, ends = triangles[:, :2].ravel(), triangles[:, 1:].ravel()

@@ -18,9 +18,9 @@ class PointsArchive:
     """OPoints at /NAME/particles that grow by frames; a sample's time in seconds is its frame over the frame rate."""
 
     def __init__(self, path: Path, layout: StageLayout):
-        self._abc = require("alembic3d.Abc", "alembic", "Alembic")
-        self._geometry = require("alembic3d.AbcGeom", "alembic", "Alembic")
-        self._imath = require("imath", "alembic", "Alembic")
+        self._abc = require("alembic3d.Abc", "alembic3d", "Alembic")
+        self._geometry = require("alembic3d.AbcGeom", "alembic3d", "Alembic")
+        self._imath = require("imath", "alembic3d", "Alembic")
         self._frame_rate = layout.frame_rate
         note = f"Y up, {layout.unit:g} m a unit"
         self._archive = self._abc.CreateArchiveWithInfo(
@@ -54,7 +54,7 @@ class PointsArchive:
         del self._points, self._archive
 
     def _begin(self, frame: int) -> None:
-        core = require("alembic3d.AbcCoreAbstract", "alembic", "Alembic")
+        core = require("alembic3d.AbcCoreAbstract", "alembic3d", "Alembic")
         sampling = core.TimeSampling(1.0 / self._frame_rate, frame / self._frame_rate)
         self._points.getSchema().setTimeSampling(self._archive.addTimeSampling(sampling))
 

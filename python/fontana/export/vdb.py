@@ -59,8 +59,7 @@ def find_openvdb() -> ModuleType:
     bundled = _bundled_with_blender()
     if bundled is None:
         raise _core.BadInput(
-            "VDB needs the Python module openvdb, which is not here: pip install 'fontana[vdb]' brings the one in "
-            "Blender's package"
+            "VDB needs the Python module openvdb, which is not here: pip install bpy brings the one of Blender"
         )
     specification = importlib.util.spec_from_file_location("openvdb", bundled)
     module = importlib.util.module_from_spec(specification)
