@@ -66,6 +66,7 @@ def reconstruct(position: np.ndarray, velocity: np.ndarray, radius: float, setti
         mesh, _ = splashsurf.reconstruction_pipeline(
             local[is_near],
             attributes_to_interpolate={"velocity": velocity[is_near].astype(np.float64)},
+            multi_threading=False,  # with threads the order of the vertices is another each time
             particle_radius=radius,
             smoothing_length=0.5 * settings.support_radius,
             cube_size=settings.cell_size,

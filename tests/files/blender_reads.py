@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import bpy
+import mathutils
 import numpy as np
 
 FOLDER, FRAME, PICTURE = Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
@@ -42,7 +43,7 @@ def imported(operator, name: str) -> dict:
     frames = [scene.frame_start, scene.frame_end, scene.render.fps]
     scene.frame_set(FRAME)
     thing = next(thing for thing in bpy.data.objects if thing.type in ("MESH", "POINTCLOUD"))
-    up = thing.matrix_world.to_3x3() @ __import__("mathutils").Vector((0, 1, 0))
+    up = thing.matrix_world.to_3x3() @ mathutils.Vector((0, 1, 0))
     return describe(thing) | {"frames": frames, "up": list(up)}
 
 
@@ -62,7 +63,7 @@ def volume(name: str) -> dict:
     speeds = [np.linalg.norm(item.value) for item in vel.iterOnValues()]
     return {
         "listed": listed,
-        "class": surface.gridClass.name,
+        "class": str(surface.gridClass),
         "voxel": [surface.transform.voxelSize()[0], vel.transform.voxelSize()[0]],
         "low": points.min(0).tolist(),
         "high": points.max(0).tolist(),

@@ -76,7 +76,7 @@ def test_blender_reads_all_and_renders(files: Path, splash: Path) -> None:
 
     volume = said["volume"]
     assert volume["listed"] == {"surface": "FLOAT", "vel": "VECTOR_FLOAT"}
-    assert volume["class"] == "LEVEL_SET" and volume["vector_type"] == "contravariant relative"
+    assert volume["class"] == "level set" and volume["vector_type"] == "contravariant relative"
     assert np.allclose(volume["voxel"], [0.025, 0.05])
     assert np.allclose(volume["low"], low, atol=0.06) and np.allclose(volume["high"], high, atol=0.06)
     assert 0.7 * speed < volume["speed"] <= 1.01 * speed

@@ -18,7 +18,7 @@ from fontana.export.target import Target, parse_target
 from fontana.export.whole import FrameWriter, write_whole
 from fontana.surface import SurfaceSettings, check_installed
 
-_MOST_JOBS = 4  # by default: each needs memory for a frame of its own, and splashsurf has threads besides
+_MOST_JOBS = 8  # by default: each needs memory for a frame of its own
 
 _folder = click.argument("folder", type=click.Path(path_type=Path))
 _frames = click.option("--frames", metavar="RANGE", help="Such as 1-48 or 1,5,10-20. [default: all]")

@@ -9,6 +9,7 @@ import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -27,6 +28,7 @@ from fontana.runs.lock import FolderLock
 from fontana.runs.runner import StoppedError
 from fontana.runs.stop import StopSignals
 
+_SIGNAL_DELAY = 0.2  # s until a signal that reached another process has reached this one too
 STOP_MESSAGE = "stopping after the frames in work; once more stops at once"
 
 # Makes and publishes a frame's file at a path; returns what there is to say about it: {"text": ..., ...}. Travels to
@@ -130,18 +132,29 @@ def _run(tasks: list[_Task], make: FrameMaker, jobs: int, stop: StopSignals) -> 
                 while waiting and len(at_work) < jobs and not stop.requested:
                     at_work.add(pool.submit(_work, waiting.pop(), make))
                 done, at_work = wait(at_work, return_when=FIRST_COMPLETED)
-                yield from map(_entry_of, done)
+                for future in done:
+                    if not _was_ended(future, stop):
+                        yield _entry_of(future)
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
 
 
+def _was_ended(future: Future, stop: StopSignals) -> bool:
+    """Whether a signal to the whole group of processes ended the one that had this frame. Raises OutOfMemory if its
+    process is gone without such a signal."""
+    error = future.exception()
+    if not isinstance(error, BrokenProcessPool):
+        return False
+    time.sleep(_SIGNAL_DELAY)
+    if stop.requested:
+        return True
+    raise _core.OutOfMemory(
+        "a process that made a frame was ended, most likely for want of memory; try --jobs 1 or coarser settings"
+    ) from error
+
+
 def _entry_of(future: Future) -> dict:
-    try:
-        entry = future.result()
-    except BrokenProcessPool as error:
-        raise _core.OutOfMemory(
-            "a process that made a frame was ended, most likely for want of memory; try --jobs 1 or coarser settings"
-        ) from error
+    entry = future.result()
     if "error" in entry:
         raise getattr(_core, entry["error"])(entry["message"])
     return entry
