@@ -1,4 +1,4 @@
-"""A short run that the tests of files share: a cube of water falls on a floor while a jet comes from the side."""
+"""A short run that the tests of files share, whole and harmed."""
 
 from __future__ import annotations
 
@@ -9,18 +9,7 @@ from pathlib import Path
 
 import pytest
 from command_line import fontana_command
-
-FRAMES = 12
-SPLASH = {
-    "name": "splash",
-    "fluid": {"particle_spacing": 0.05},
-    "emitters": [
-        {"type": "block", "centre": [0, 0.35, 0], "size": [0.4, 0.4, 0.4], "jitter": 0.1},
-        {"type": "disc", "centre": [-0.8, 0.5, 0], "radius": 0.1, "direction": [1, 0.3, 0], "speed": 2.5},
-    ],
-    "colliders": [{"type": "plane_y"}],
-    "output": {"frames": FRAMES},
-}
+from splash_scene import SPLASH
 
 
 @pytest.fixture(scope="session")

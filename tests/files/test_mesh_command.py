@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 import trimesh
 from command_line import error_line, fontana_command
-from conftest import FRAMES
+from splash_scene import FRAMES
 
 from fontana import bgeo
 

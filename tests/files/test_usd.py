@@ -11,10 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import error_line, fontana_command
-from conftest import FRAMES
 from pxr import Usd, UsdGeom, UsdValidation
+from splash_scene import FRAMES
 
 from fontana.cache import Cache
+from fontana.export import usd
 from fontana.surface import SurfaceSettings, reconstruct
 
 
@@ -54,6 +55,20 @@ def test_particles_are_one_stage_of_points(fontana, splash: Path, tmp_path: Path
         extent = np.array(points.GetExtentAttr().Get(frame))
         assert np.allclose(extent[0], arrays["position"].min(axis=0) - 0.025, atol=1e-6)
         assert np.allclose(extent[1], arrays["position"].max(axis=0) + 0.025, atol=1e-6)
+
+
+def test_a_stage_saved_in_parts_is_the_same(splash: Path, tmp_path: Path, monkeypatch) -> None:
+    """Long runs do not fit in memory."""
+    monkeypatch.setattr(usd, "_SAVE_EVERY_BYTES", 1)
+    cache = Cache(splash)
+    with usd.points_stage(tmp_path / "s.usdc", usd.StageLayout("splash", 24, 1, 1, FRAMES)) as writer:
+        for frame in cache.frames:
+            writer.add(frame, cache.read(frame))
+    stage = Usd.Stage.Open(str(tmp_path / "s.usdc"))
+    assert_layout(stage, 1, FRAMES)
+    points = UsdGeom.Points(stage.GetPrimAtPath("/splash/particles"))
+    for frame in cache.frames:
+        assert np.array_equal(points.GetPointsAttr().Get(frame), cache.read(frame)["position"])
 
 
 def test_surfaces_are_layers_that_a_stage_plays(fontana, splash: Path, tmp_path: Path) -> None:
