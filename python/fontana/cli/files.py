@@ -134,7 +134,7 @@ def mesh(
     default=vdb.VdbSettings().voxel_size,
     show_default=True,
     metavar="RADII",
-    help="Of surface.vdb, in particle radii; vel has voxels of twice that.",
+    help="Of the grid surface, in particle radii; vel has voxels of twice that. Only .vdb.",
 )
 @_jobs
 @_restart

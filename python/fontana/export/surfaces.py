@@ -30,8 +30,7 @@ class SurfaceMaker:
     def __call__(self, arrays: dict[str, np.ndarray], frame: int, path: Path) -> dict:
         mesh = reconstruct(arrays["position"], arrays["velocity"], self.radius, self.settings)
         write_mesh(mesh, frame, path, self.layout)
-        left_out = {"left_out": mesh.left_out} if mesh.left_out else {}
-        return {"text": _describe(mesh), "triangles": len(mesh.triangles)} | left_out
+        return {"text": _describe(mesh), "triangles": len(mesh.triangles), "left_out": mesh.left_out}
 
 
 def write_mesh(mesh: Mesh, frame: int, path: Path, layout: usd.StageLayout) -> None:

@@ -46,7 +46,10 @@ class VdbMaker:
         vel = _velocity_grid(openvdb, position, velocity, 2.0 * voxel_size)
         with staged(path) as temporary:
             openvdb.write(str(temporary), grids=[surface, vel], metadata={"creator": f"Fontana {_core.version()}"})
-        return {"text": f"{surface.activeVoxelCount():,} voxels", "voxels": surface.activeVoxelCount()}
+        text = f"{surface.activeVoxelCount():,} voxels"
+        if mesh.left_out:
+            text += f", {mesh.left_out} particles too far away for a grid"
+        return {"text": text, "voxels": surface.activeVoxelCount(), "left_out": mesh.left_out}
 
 
 def find_openvdb() -> ModuleType:
