@@ -1,9 +1,12 @@
 """One test text for every backend: a test that takes `backend` or `scheme` runs on each."""
 
 import os
+import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import fontana_command
 
 from fontana import _core
 
@@ -68,3 +71,23 @@ def random_block():
         return position.astype(np.float32), velocity.astype(np.float32)
 
     return make
+
+
+@pytest.fixture
+def fontana(tmp_path: Path):
+    """Runs the command line in a folder of its own and returns the finished process."""
+
+    def call(*arguments: object, code: int = 0, env: dict | None = None, **options) -> subprocess.CompletedProcess:
+        done = subprocess.run(
+            fontana_command(*arguments),
+            cwd=tmp_path,
+            env=os.environ | {"FONTANA_DEBUG": ""} | (env or {}),
+            capture_output=True,
+            text=True,
+            **options,
+        )
+        assert done.returncode == code, f"code {done.returncode}\n{done.stdout}\n{done.stderr}"
+        assert "Traceback" not in done.stderr or (env or {}).get("FONTANA_DEBUG")
+        return done
+
+    return call

@@ -12,6 +12,7 @@ import click
 from fontana import _core
 from fontana.cli import exit_codes
 from fontana.cli.bench import bench
+from fontana.cli.files import export, mesh
 from fontana.cli.information import devices, explain, fluids, scenes, schema
 from fontana.cli.run import resume, run
 from fontana.cli.validate import validate
@@ -36,7 +37,7 @@ def cli() -> None:
     pass
 
 
-for command in (run, resume, devices, verify, validate, bench, scenes, schema, explain, fluids):
+for command in (run, resume, mesh, export, devices, verify, validate, bench, scenes, schema, explain, fluids):
     cli.add_command(command)
 
 
