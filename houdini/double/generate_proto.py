@@ -73,7 +73,9 @@ def header(name: str, parms) -> str:
         for parm in parms
         if parm["type"] == "ordinal"
     ]
-    using = [f"    using {enum_of(parm)} = {name}Enums::{enum_of(parm)};" for parm in parms if parm["type"] == "ordinal"]
+    using = [
+        f"    using {enum_of(parm)} = {name}Enums::{enum_of(parm)};" for parm in parms if parm["type"] == "ordinal"
+    ]
     evaluate = [
         f'        graph->evalOpParm(my{parm["cppname"]}, node, "{parm["name"]}", time, dependency);' for parm in parms
     ]
@@ -89,7 +91,8 @@ def header(name: str, parms) -> str:
             f"class {name}Parms : public SOP_NodeParms {{",
             " public:",
             *using,
-            "    void buildFromOp(const OP_GraphProxy* graph, exint node, fpreal time, DEP_MicroNode* dependency) override {",
+            "    void buildFromOp(const OP_GraphProxy* graph, exint node, fpreal time,",
+            "                     DEP_MicroNode* dependency) override {",
             *evaluate,
             "    }",
             *map(accessor, parms),

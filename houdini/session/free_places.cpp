@@ -35,7 +35,8 @@ class Candidates {
  public:
     Candidates(const SourcePoints& points, double distance)
         : points_(points), distance_(distance), is_free_(points.count(), true) {
-        for (std::size_t k = 0; k < points.count(); ++k) cells_[cell_of(&points.position[3 * k], distance)].push_back(k);
+        for (std::size_t k = 0; k < points.count(); ++k)
+            cells_[cell_of(&points.position[3 * k], distance)].push_back(k);
     }
 
     void rule_out_near(const float* particle) {

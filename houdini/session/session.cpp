@@ -71,7 +71,8 @@ void Session::follow_edits(std::int64_t frame, FrameHost& host) {
     const FrameRecord* known = record(frame);
     if (!known || steady_key_ || input_wavers_) return;
     const PointsWanted wanted = frame == start_frame_ ? PointsWanted::all : PointsWanted::continuous;
-    // What an input gives for a frame changes by an edit alone. Where the edit began is not known: all is simulated anew.
+    // What an input gives for a frame changes by an edit alone. Where the edit began is not known: all is simulated
+    // anew.
     if (points_key_of(host.points(frame, wanted)) != known->points_key) reset();
 }
 
@@ -296,7 +297,7 @@ std::vector<float> Session::ages() const {
 const FrameRecord* Session::record(std::int64_t frame) const {
     const std::int64_t index = frame - start_frame_;
     return index >= 0 && index < static_cast<std::int64_t>(records_.size()) ? &records_[static_cast<std::size_t>(index)]
-                                                                           : nullptr;
+                                                                            : nullptr;
 }
 
 std::string Session::device_name() const {

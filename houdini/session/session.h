@@ -1,7 +1,7 @@
 // A live simulation behind a timeline: it plays, goes back, jumps ahead and follows edits, and knows no Houdini.
 //
-// A cook asks for a frame. What the frame depends on is compared with what it depended on when it was simulated; an edit
-// forgets the frames. A frame in the history is put back on the device as it was, byte for byte; the others are
+// A cook asks for a frame. What the frame depends on is compared with what it depended on when it was simulated; an
+// edit forgets the frames. A frame in the history is put back on the device as it was, byte for byte; the others are
 // simulated from the nearest one before. So a frame is the same whichever way it was reached.
 #pragma once
 
@@ -90,15 +90,15 @@ class Session {
     StepFrame step_frame_;
     std::atomic<bool> stop_{false};
     std::unique_ptr<fontana_simulation, Destroy> simulation_;
-    std::vector<std::byte> blank_;       // the state without particles
-    std::vector<FrameRecord> records_;   // from the start frame on
+    std::vector<std::byte> blank_;      // the state without particles
+    std::vector<FrameRecord> records_;  // from the start frame on
     FrameHistory history_;
     std::int64_t start_frame_ = 1;
-    std::int64_t position_ = 0;          // the frame that lies on the device
-    bool is_positioned_ = false;         // false: what lies there is no whole frame
-    bool input_wavers_ = false;          // gave other points for a frame when asked again
+    std::int64_t position_ = 0;   // the frame that lies on the device
+    bool is_positioned_ = false;  // false: what lies there is no whole frame
+    bool input_wavers_ = false;   // gave other points for a frame when asked again
     std::uint64_t steady_key_ = 0, edit_key_ = 0;
-    FrameHost* host_ = nullptr;          // during a cook
+    FrameHost* host_ = nullptr;  // during a cook
     std::int64_t cook_from_ = 0, cook_to_ = 0;
 };
 

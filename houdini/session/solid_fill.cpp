@@ -29,8 +29,8 @@ Point corner(const TriangleMesh& mesh, std::uint32_t point) {
     return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
 }
 
-// Twice the signed area of (a, b, (x, z)) seen from above. The ends are put in order first, so that the two triangles of
-// an edge get the same number with opposite signs, whatever the rounding.
+// Twice the signed area of (a, b, (x, z)) seen from above. The ends are put in order first, so that the two triangles
+// of an edge get the same number with opposite signs, whatever the rounding.
 double side(const Point& a, const Point& b, double x, double z) {
     const bool swap = b.x < a.x || (b.x == a.x && b.z < a.z);
     const Point &first = swap ? b : a, &second = swap ? a : b;
@@ -79,7 +79,8 @@ void fill_between(const Crossing& enter, const Crossing& leave, double spacing, 
     const double count = (leave.y - enter.y) / spacing + static_cast<double>(out.size() / 3);
     require_few(count, spacing);
     for (std::int64_t j = first_column(enter.y, spacing); centre_of(j, spacing) < leave.y; ++j)
-        for (const std::int64_t index : {enter.i, j, enter.k}) out.push_back(static_cast<float>(centre_of(index, spacing)));
+        for (const std::int64_t index : {enter.i, j, enter.k})
+            out.push_back(static_cast<float>(centre_of(index, spacing)));
 }
 
 }  // namespace

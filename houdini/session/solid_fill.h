@@ -12,14 +12,14 @@
 namespace fontana::houdini {
 
 struct TriangleMesh {
-    std::vector<float> position;                           // 3 a point
-    std::vector<std::array<std::uint32_t, 3>> triangles;   // counter-clockwise or clockwise from outside, all alike
+    std::vector<float> position;                          // 3 a point
+    std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise or clockwise from outside, all alike
 };
 
 // Whether each edge is used as often in one direction as in the other. Points at one place count as one.
 bool is_closed(const TriangleMesh& mesh);
-// Lattice points inside, 3 floats each: multiples of `spacing` plus a half along each axis, so that a mesh that moves does
-// not drag its points along. Throws std::runtime_error where there would be more than 2^28 columns or points.
+// Lattice points inside, 3 floats each: multiples of `spacing` plus a half along each axis, so that a mesh that moves
+// does not drag its points along. Throws std::runtime_error where there would be more than 2^28 columns or points.
 std::vector<float> fill_solid(const TriangleMesh& mesh, double spacing);
 
 }  // namespace fontana::houdini

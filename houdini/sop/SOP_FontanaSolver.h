@@ -49,8 +49,8 @@ class SOP_FontanaSolver final : public SOP_Node {
 
     fontana::houdini::Session session_;
     fontana::houdini::SteadyInput steady_input_;
-    std::mutex cooking_;               // Houdini may ask for the node from more than one thread
-    bool has_output_ = false;          // gdp holds particles of an earlier cook and nothing else
+    std::mutex cooking_;       // Houdini may ask for the node from more than one thread
+    bool has_output_ = false;  // gdp holds particles of an earlier cook and nothing else
     std::int64_t shown_frame_ = 0;
-    double shown_radius_ = 0.0;        // pscale in gdp
+    double shown_radius_ = 0.0;  // pscale in gdp
 };

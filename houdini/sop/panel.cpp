@@ -29,12 +29,11 @@ const char* const head = R"DS(
 // Goes before the rows of a tab.
 const struct {
     const char *group, *text;
-} tab_heads[] = {
-    {"time", R"DS(
+} tab_heads[] = {{"time", R"DS(
         parm { name "use_scene_rate" label "Frame Rate of the Scene" type toggle default { "1" }
                help "On: a frame lasts as long as Houdini's. Off: Frame rate below decides." }
 )DS"},
-    {"solver", R"DS(
+                 {"solver", R"DS(
         parm { name "use_gpu" label "Use GPU" type toggle default { "1" }
                help "On: Backend below decides, and auto takes the first GPU. Off: the CPU." }
         parm { name "memory_limit" label "Memory Limit (MiB)" type integer default { "4096" } range { 16! 65536 }
@@ -73,13 +72,17 @@ std::string range_of(const fontana_parameter& p) {
 std::string value_of(const PanelRow& row) {
     const fontana_parameter& p = row.parameter;
     switch (p.type) {
-        case FONTANA_BOOL: return "type toggle default { \"" + number(p.default_value[0]) + "\" }";
-        case FONTANA_INT: return "type integer default { \"" + number(p.default_value[0]) + "\" } " + range_of(p);
-        case FONTANA_FLOAT: return "type float default { \"" + number(p.default_value[0]) + "\" } " + range_of(p);
+        case FONTANA_BOOL:
+            return "type toggle default { \"" + number(p.default_value[0]) + "\" }";
+        case FONTANA_INT:
+            return "type integer default { \"" + number(p.default_value[0]) + "\" } " + range_of(p);
+        case FONTANA_FLOAT:
+            return "type float default { \"" + number(p.default_value[0]) + "\" } " + range_of(p);
         case FONTANA_VECTOR:
             return "type vector size 3 default { \"" + number(p.default_value[0]) + "\" \"" +
                    number(p.default_value[1]) + "\" \"" + number(p.default_value[2]) + "\" }";
-        case FONTANA_CHOICE: break;
+        case FONTANA_CHOICE:
+            break;
     }
     std::string menu;
     for (const std::string& word : row.choices) menu += quoted(word) + " " + quoted(capitalised(word)) + " ";
@@ -104,17 +107,20 @@ std::string collisions_text() {
     text << R"DS(
     group { name "collisions" label "Implicit Collisions"
         multiparm { name "colliders" label "Colliders" default 0 parmtag { "multistartoffset" "1" }
-            parm { name "collider_enable#" label "Enable" type toggle default { ")DS" << c.enabled << R"DS(" } }
+            parm { name "collider_enable#" label "Enable" type toggle default { ")DS"
+         << c.enabled << R"DS(" } }
             parm { name "collider_type#" label "Type" type ordinal default { "plane_y" }
                    menu { "plane_x" "0: Plane X" "plane_y" "1: Plane Y" "plane_z" "2: Plane Z"
                           "sphere_inside" "3: Sphere, inside" "sphere_outside" "4: Sphere, outside"
                           "cylinder_inside" "5: Cylinder, inside" "cylinder_outside" "6: Cylinder, outside" }
                    help "Planes keep the fluid on the positive side. Inside keeps it in, outside keeps it out." }
-            parm { name "collider_flip#" label "Flip" type toggle default { ")DS" << c.flip << R"DS(" }
+            parm { name "collider_flip#" label "Flip" type toggle default { ")DS"
+         << c.flip << R"DS(" }
                    help "Of a plane: keeps the fluid on the negative side." }
             parm { name "collider_centre#" label "Centre" type vector size 3
                    default { "0" "0" "0" } help "Keyed: the surface moves, and takes the fluid along." }
-            parm { name "collider_radius#" label "Radius" type float default { ")DS" << number(c.radius) << R"DS(" }
+            parm { name "collider_radius#" label "Radius" type float default { ")DS"
+         << number(c.radius) << R"DS(" }
                    range { 0! 10 } help "Of a sphere or cylinder." }
             parm { name "collider_use_cutoff#" label "Use Cutoff" type toggle default { "0" }
                    help "Of a cylinder: its wall ends at a height. Off: it goes on for ever." }
@@ -122,10 +128,10 @@ std::string collisions_text() {
                    disablewhen "{ collider_use_cutoff# == 0 }" help "Height (y) up to which a cylinder's wall stands." }
             parm { name "collider_thickness#" label "Thickness" type float default { "0" } range { 0! 1 }
                    help "Of the wall of a sphere or cylinder. 0: solid." }
-            parm { name "collider_elasticity#" label "Elasticity" type float default { ")DS" << number(c.elasticity)
-         << R"DS(" } range { 0! 1! } help "Kept share of the velocity along the normal." }
-            parm { name "collider_friction#" label "Friction" type float default { ")DS" << number(c.friction)
-         << R"DS(" } range { 0! 1! } help "Lost share of the velocity along the surface." }
+            parm { name "collider_elasticity#" label "Elasticity" type float default { ")DS"
+         << number(c.elasticity) << R"DS(" } range { 0! 1! } help "Kept share of the velocity along the normal." }
+            parm { name "collider_friction#" label "Friction" type float default { ")DS"
+         << number(c.friction) << R"DS(" } range { 0! 1! } help "Lost share of the velocity along the surface." }
         }
     }
 )DS";

@@ -17,8 +17,8 @@ namespace fontana::houdini {
 // The point attribute (integer) that a source sets to 1 where a point is to be emitted at every frame.
 constexpr const char* continuous_attribute = "continuous";
 
-// The points of a group's pattern, all where it is empty. The range lives as long as this. Throws std::runtime_error where
-// the group is not known.
+// The points of a group's pattern, all where it is empty. The range lives as long as this. Throws std::runtime_error
+// where the group is not known.
 class PointGroup {
  public:
     PointGroup(const GU_Detail& detail, const std::string& pattern);

@@ -8,9 +8,8 @@
 
 void newSopOperator(OP_OperatorTable* table) {
     const char* const submenu = "Simulation/Fontana";
-    auto* source = new OP_Operator(SOP_FontanaSourceNode::type_name, "Fontana Source",
-                                   SOP_FontanaSourceNode::construct, SOP_FontanaSourceNode::build_templates(), 1, 1,
-                                   nullptr, 0, nullptr, 1, submenu);
+    auto* source = new OP_Operator(SOP_FontanaSourceNode::type_name, "Fontana Source", SOP_FontanaSourceNode::construct,
+                                   SOP_FontanaSourceNode::build_templates(), 1, 1, nullptr, 0, nullptr, 1, submenu);
     source->setIconName("fontana_source");
     table->addOperator(source);
     auto* solver = new OP_Operator(SOP_FontanaSolver::type_name, "Fontana Solver", SOP_FontanaSolver::construct,

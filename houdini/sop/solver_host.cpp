@@ -18,9 +18,9 @@ namespace {
 
 const CH_Manager& channels() { return *OPgetDirector()->getChannelManager(); }
 
-const char* const collider_parms[] = {"collider_enable", "collider_type",       "collider_flip",   "collider_centre",
-                                      "collider_radius", "collider_use_cutoff", "collider_cutoff", "collider_thickness",
-                                      "collider_elasticity", "collider_friction"};
+const char* const collider_parms[] = {
+    "collider_enable",     "collider_type",   "collider_flip",      "collider_centre",     "collider_radius",
+    "collider_use_cutoff", "collider_cutoff", "collider_thickness", "collider_elasticity", "collider_friction"};
 
 std::vector<std::int64_t> data_ids(const GU_Detail& detail) {
     std::vector<std::int64_t> ids = {detail.getNumPoints()};

@@ -74,9 +74,8 @@ void SourceVerb::cook(const CookParms& cookparms) const {
     const GU_Detail* input = cookparms.inputGeo(0);
     if (!input) return detail->clearAndDestroy();
     try {
-        SourceParticles particles = has_mesh(*input)
-                                        ? particles_in_mesh(*input, parms.getParticleSpacing())
-                                        : particles_at_points(*input, parms.getGroup().c_str());
+        SourceParticles particles = has_mesh(*input) ? particles_in_mesh(*input, parms.getParticleSpacing())
+                                                     : particles_at_points(*input, parms.getGroup().c_str());
         apply_panel(parms, particles);
         write(particles, *detail);
     } catch (const std::exception& error) {  // none may reach Houdini

@@ -33,8 +33,8 @@ std::vector<Value> repeated_mean(const std::vector<Value>& values, std::size_t c
     if (values.empty()) return {};
     std::vector<double> mean(components, 0.0);
     for (std::size_t k = 0; k < values.size(); ++k)
-        mean[k % components] += static_cast<double>(values[k]) * static_cast<double>(components) /
-                                static_cast<double>(values.size());
+        mean[k % components] +=
+            static_cast<double>(values[k]) * static_cast<double>(components) / static_cast<double>(values.size());
     std::vector<Value> result(components * count);
     for (std::size_t k = 0; k < result.size(); ++k) result[k] = static_cast<Value>(mean[k % components]);
     return result;
@@ -81,7 +81,8 @@ SourceParticles particles_in_mesh(const GU_Detail& detail, double spacing) {
         throw std::runtime_error("the particle spacing is " + std::to_string(spacing) + "; expected metres above 0");
     const TriangleMesh mesh = triangulated(detail);
     for (const float x : mesh.position)
-        if (!std::isfinite(x)) throw std::runtime_error("a point of the mesh is at a place that is not a finite number");
+        if (!std::isfinite(x))
+            throw std::runtime_error("a point of the mesh is at a place that is not a finite number");
     if (!is_closed(mesh))
         throw std::runtime_error(
             "the mesh is open, so it has no inside: close it (PolyCap, Boolean, VDB from Polygons) or give points");

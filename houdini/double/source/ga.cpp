@@ -67,10 +67,14 @@ void* GA_Attribute::place(GA_Offset offset) {
 double GA_Attribute::number(GA_Offset offset, int component) const {
     const void* tuple = place(offset);
     switch (storage_) {
-        case GA_STORE_INT32: return static_cast<const int32*>(tuple)[component];
-        case GA_STORE_INT64: return static_cast<double>(static_cast<const int64*>(tuple)[component]);
-        case GA_STORE_REAL32: return static_cast<double>(static_cast<const float*>(tuple)[component]);
-        case GA_STORE_REAL64: return static_cast<const double*>(tuple)[component];
+        case GA_STORE_INT32:
+            return static_cast<const int32*>(tuple)[component];
+        case GA_STORE_INT64:
+            return static_cast<double>(static_cast<const int64*>(tuple)[component]);
+        case GA_STORE_REAL32:
+            return static_cast<double>(static_cast<const float*>(tuple)[component]);
+        case GA_STORE_REAL64:
+            return static_cast<const double*>(tuple)[component];
     }
     return 0.0;
 }
@@ -78,10 +82,18 @@ double GA_Attribute::number(GA_Offset offset, int component) const {
 void GA_Attribute::set_number(GA_Offset offset, int component, double value) {
     void* tuple = place(offset);
     switch (storage_) {
-        case GA_STORE_INT32: static_cast<int32*>(tuple)[component] = static_cast<int32>(value); break;
-        case GA_STORE_INT64: static_cast<int64*>(tuple)[component] = static_cast<int64>(value); break;
-        case GA_STORE_REAL32: static_cast<float*>(tuple)[component] = static_cast<float>(value); break;
-        case GA_STORE_REAL64: static_cast<double*>(tuple)[component] = value; break;
+        case GA_STORE_INT32:
+            static_cast<int32*>(tuple)[component] = static_cast<int32>(value);
+            break;
+        case GA_STORE_INT64:
+            static_cast<int64*>(tuple)[component] = static_cast<int64>(value);
+            break;
+        case GA_STORE_REAL32:
+            static_cast<float*>(tuple)[component] = static_cast<float>(value);
+            break;
+        case GA_STORE_REAL64:
+            static_cast<double*>(tuple)[component] = value;
+            break;
     }
 }
 
@@ -183,8 +195,7 @@ UT_Vector3 GA_Detail::getPos3(GA_Offset offset) const {
 }
 
 void GA_Detail::setPos3(GA_Offset offset, const UT_Vector3& position) {
-    for (int c = 0; c < 3; ++c)
-        getP()->set_number(offset, c, static_cast<double>(position(static_cast<unsigned>(c))));
+    for (int c = 0; c < 3; ++c) getP()->set_number(offset, c, static_cast<double>(position(static_cast<unsigned>(c))));
 }
 
 const GA_Attribute* GA_Detail::findAttribute(GA_AttributeOwner owner, const UT_StringRef& name) const {
@@ -204,8 +215,7 @@ GA_Attribute* GA_Detail::add(GA_AttributeOwner owner, const UT_StringHolder& nam
     if (present)
         attributes_.erase(
             std::find_if(attributes_.begin(), attributes_.end(), [&](const auto& a) { return a.get() == present; }));
-    attributes_.push_back(
-        std::make_unique<GA_Attribute>(owner, name.toStdString(), storage, tuple_size, fallback));
+    attributes_.push_back(std::make_unique<GA_Attribute>(owner, name.toStdString(), storage, tuple_size, fallback));
     attributes_.back()->resize(owner == GA_ATTRIB_POINT ? points_.offsetSize() : 1);
     return attributes_.back().get();
 }

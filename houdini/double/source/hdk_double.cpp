@@ -116,8 +116,8 @@ std::vector<UT_Vector3> positions(const GU_Detail& detail) {
 void add_box(GU_Detail& detail, const UT_Vector3& low, const UT_Vector3& high) {
     const GA_Offset first = detail.appendPointBlock(8);
     for (int k = 0; k < 8; ++k)
-        detail.setPos3(first + k, UT_Vector3(k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(),
-                                             k & 4 ? high.z() : low.z()));
+        detail.setPos3(first + k,
+                       UT_Vector3(k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(), k & 4 ? high.z() : low.z()));
     const int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     for (const auto& face : faces) {
         GA_Offset vertex;

@@ -115,8 +115,7 @@ fpreal OP_Parameters::evalFloatInst(const UT_StringRef& name, const int* instanc
     return evalFloat(instance_name(name, instance), component, time);
 }
 
-exint OP_Parameters::evalIntInst(const UT_StringRef& name, const int* instance, int component, fpreal time,
-                                 int) const {
+exint OP_Parameters::evalIntInst(const UT_StringRef& name, const int* instance, int component, fpreal time, int) const {
     return evalInt(instance_name(name, instance), component, time);
 }
 
@@ -183,6 +182,7 @@ void OP_GraphProxy::evalOpParm(UT_Vector3D& value, exint, const char* name, fpre
                             parameters_->evalFloat(name, 2, time));
     });
 }
-void OP_GraphProxy::evalOpParm(UT_StringHolder& value, exint, const char* name, fpreal time, DEP_MicroNode* node) const {
+void OP_GraphProxy::evalOpParm(UT_StringHolder& value, exint, const char* name, fpreal time,
+                               DEP_MicroNode* node) const {
     read_and_mark(*parameters_, name, node, [&] { parameters_->evalString(value, name, 0, time); });
 }

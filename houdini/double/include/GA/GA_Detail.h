@@ -88,7 +88,7 @@ class GA_Detail {
 
     GA_IndexMap points_;
     GA_Topology topology_;
-    std::deque<GA_Primitive> primitives_;  // whose members stay where they are
+    std::deque<GA_Primitive> primitives_;                    // whose members stay where they are
     std::vector<std::unique_ptr<GA_Attribute>> attributes_;  // the first is P
     std::map<std::string, GA_PointGroup> point_groups_;
 };

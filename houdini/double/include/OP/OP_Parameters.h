@@ -43,8 +43,8 @@ class OP_Parameters {
 
  private:
     struct Value {
-        std::vector<std::string> constant;               // by component
-        std::vector<std::map<fpreal, double>> keys;      // by component, by time
+        std::vector<std::string> constant;           // by component
+        std::vector<std::map<fpreal, double>> keys;  // by component, by time
     };
     const Value& value_of(const std::string& name) const;
     double number(const std::string& name, int component, fpreal time) const;
