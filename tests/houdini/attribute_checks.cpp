@@ -15,7 +15,7 @@ void names_and_types() {
         const char* name;
         int size;
         GA_Storage storage;
-    } expected[] = {{"P", 3, GA_STORE_REAL32},       {"v", 3, GA_STORE_REAL32},      {"id", 1, GA_STORE_INT64},
+    } expected[] = {{"P", 3, GA_STORE_REAL32},       {"v", 3, GA_STORE_REAL32},        {"id", 1, GA_STORE_INT64},
                     {"density", 1, GA_STORE_REAL32}, {"pressure", 1, GA_STORE_REAL32}, {"pscale", 1, GA_STORE_REAL32},
                     {"age", 1, GA_STORE_REAL32}};
     CHECK(detail.attribute_names(GA_ATTRIB_POINT).size() == std::size(expected));
@@ -89,9 +89,7 @@ void set_number(GU_Detail& detail, const char* name, const Value& value) {
 void velocity_and_mass_are_taken() {
     const std::uint64_t plain = dressed([](GU_Detail&) {});
     CHECK(plain == played(4).back());
-    CHECK(plain != dressed([](GU_Detail& detail) {
-              detail.addFloatTuple(GA_ATTRIB_POINT, "v", 3, GA_Defaults(1.0));
-          }));
+    CHECK(plain != dressed([](GU_Detail& detail) { detail.addFloatTuple(GA_ATTRIB_POINT, "v", 3, GA_Defaults(1.0)); }));
     CHECK(plain != dressed([](GU_Detail& detail) {
               set_number(detail, "mass", [](GA_Index k) { return k % 2 ? 0.1 : 0.125; });
           }));
@@ -132,9 +130,9 @@ void the_info_panel() {
     std::string text;
     const UT_InfoTree tree = hdk_double::info_of(*scene.solver, 4);
     for (const auto& [name, value] : tree.children().front().rows()) text += name + ": " + value + "\n";
-    for (const char* part : {"Frame: 4\n", "Particles: 125\n", "Substeps: ", "limited by ", "Iterations: ",
-                             "Density error: ", "Time of the frame: ", "Device: cpu", "Device memory: ",
-                             "History: 4 frames"})
+    for (const char* part : {"Frame: 4\n", "Particles: 125\n", "Substeps: ", "limited by ",
+                             "Iterations: ", "Density error: ", "Time of the frame: ", "Device: cpu",
+                             "Device memory: ", "History: 4 frames"})
         CHECK(contains(text, part));
 }
 

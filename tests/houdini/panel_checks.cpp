@@ -61,11 +61,16 @@ int default_index(const fontana_parameter& parameter) {
 // Another value than the default, within the bounds; of a choice, its index.
 double other_value(const fontana_parameter& p) {
     switch (p.type) {
-        case FONTANA_BOOL: return 1.0 - p.default_value[0];
-        case FONTANA_INT: return p.default_value[0] + 2.0;
-        case FONTANA_VECTOR: return p.default_value[0] + 1.0;
-        case FONTANA_CHOICE: return default_index(p) == 0 ? 1.0 : 0.0;
-        case FONTANA_FLOAT: break;
+        case FONTANA_BOOL:
+            return 1.0 - p.default_value[0];
+        case FONTANA_INT:
+            return p.default_value[0] + 2.0;
+        case FONTANA_VECTOR:
+            return p.default_value[0] + 1.0;
+        case FONTANA_CHOICE:
+            return default_index(p) == 0 ? 1.0 : 0.0;
+        case FONTANA_FLOAT:
+            break;
     }
     const double larger = p.default_value[0] == 0.0 ? 0.25 : 1.25 * p.default_value[0];
     return larger <= p.maximum ? larger : 0.5 * p.default_value[0];
@@ -133,11 +138,11 @@ void the_switches() {
 }
 
 void the_panes_of_the_thesis(const SOP_Node& solver) {
-    for (const auto& [name, folder] : std::vector<std::pair<const char*, const char*>>{
-             {"fluid_viscosity", "Fluid"},
-             {"forces_gravity", "External Forces"},
-             {"use_gpu", "Options"},
-             {"colliders", "Implicit Collisions"}})
+    for (const auto& [name, folder] :
+         std::vector<std::pair<const char*, const char*>>{{"fluid_viscosity", "Fluid"},
+                                                          {"forces_gravity", "External Forces"},
+                                                          {"use_gpu", "Options"},
+                                                          {"colliders", "Implicit Collisions"}})
         CHECK(solver.template_of(name).folder == folder);
     for (const char* name : {"enable", "type", "centre", "radius", "cutoff", "elasticity", "friction"})
         CHECK(!solver.template_of(std::string("collider_") + name + "3").label.empty());

@@ -60,9 +60,8 @@ void an_open_mesh_is_refused() {
 }
 
 void a_spacing_that_is_too_fine_is_refused() {
-    SourceScene scene([](GU_Detail& detail, fpreal) {
-        add_box(detail, UT_Vector3(0, 0, 0), UT_Vector3(1000.0f, 1000.0f, 1000.0f));
-    });
+    SourceScene scene(
+        [](GU_Detail& detail, fpreal) { add_box(detail, UT_Vector3(0, 0, 0), UT_Vector3(1000.0f, 1000.0f, 1000.0f)); });
     scene.cook();
     CHECK(contains(sentences(scene.source), "too fine"));
     set_float(scene.source, "particle_spacing", 0.0);

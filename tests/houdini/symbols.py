@@ -1,10 +1,11 @@
-"""symbols.py PLUGIN: what the built plugin shows to Houdini and takes from others; says what is wrong and exits with 1."""
+"""symbols.py PLUGIN: what the plugin shows to Houdini and takes from others; says what is wrong and exits with 1."""
 
 import subprocess
 import sys
 
 SHOWN = {"newSopOperator", "HoudiniDSOVersion"}
 LINKER = {"_init", "_fini", "_edata", "_end", "__bss_start"}
+SANITIZERS = ("__asan", "__odr_asan", "__tsan")
 
 
 def names(plugin: str, *options: str) -> set[str]:
@@ -14,7 +15,7 @@ def names(plugin: str, *options: str) -> set[str]:
 
 def main() -> int:
     plugin = sys.argv[1]
-    shown = {name for name in names(plugin, "--defined-only") if not name.startswith(("__asan", "__odr_asan", "__tsan"))}
+    shown = {name for name in names(plugin, "--defined-only") if not name.startswith(SANITIZERS)}
     taken = names(plugin, "--undefined-only")
     wrong = [f"shows {name}" for name in sorted(shown - SHOWN - LINKER)]
     wrong += [f"lacks {name}" for name in sorted(SHOWN - shown)]
