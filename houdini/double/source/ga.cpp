@@ -32,6 +32,7 @@ GA_Attribute::GA_Attribute(const GA_Attribute& other)
     for (std::size_t page = 0; page < pages_.size(); ++page)
         std::memcpy(pages_[page].get(), other.pages_[page].get(), page_bytes);
     data_id_ = other.data_id_;
+    type_info_ = other.type_info_;
 }
 
 exint GA_Attribute::single_access_count() { return single_accesses; }
