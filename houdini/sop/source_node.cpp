@@ -72,14 +72,19 @@ void write(const SourceParticles& particles, GU_Detail& detail) {
     wholes(continuous_attribute, particles.continuous);
 }
 
+SourceParticles particles_of(const GU_Detail& input, const SOP_FontanaSourceParms& parms) {
+    if (has_vdb(input)) return particles_in_vdbs(input, parms.getParticleSpacing());
+    if (has_mesh(input)) return particles_in_mesh(input, parms.getParticleSpacing());
+    return particles_at_points(input, parms.getGroup().c_str());
+}
+
 void SourceVerb::cook(const CookParms& cookparms) const {
     const auto& parms = cookparms.parms<SOP_FontanaSourceParms>();
     GU_Detail* detail = cookparms.gdh().gdpNC();
     const GU_Detail* input = cookparms.inputGeo(0);
     if (!input) return detail->clearAndDestroy();
     try {
-        SourceParticles particles = has_mesh(*input) ? particles_in_mesh(*input, parms.getParticleSpacing())
-                                                     : particles_at_points(*input, parms.getGroup().c_str());
+        SourceParticles particles = particles_of(*input, parms);
         apply_panel(parms, particles);
         write(particles, *detail);
     } catch (const std::exception& error) {  // none may reach Houdini

@@ -48,5 +48,6 @@ def test_the_plugin_compiles_without_warnings(made, compiler, version):
                *made.glob("*.cpp")]  # fmt: skip
     assert len(sources) > 15
     options = [*WARNINGS, "-std=c++17", f"-DSYS_VERSION_MAJOR_INT={version}", *(f"-I{folder}" for folder in folders)]
-    result = subprocess.run([compiler, "-fsyntax-only", *options, *sources], capture_output=True, text=True, check=False)
+    command = [compiler, "-fsyntax-only", *options, *sources]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stderr
