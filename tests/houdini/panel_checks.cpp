@@ -157,6 +157,7 @@ void a_keyed_collider_moves() {
     scene.solver->set_key("collider_centre1", 1, hdk_double::time_of(5), 0.4);
     hdk_double::cook(*scene.solver, 4);
     CHECK(key_times.size() == 2 && key_centres.size() == 6);
+    if (key_times.size() != 2) return;
     CHECK(std::abs(key_times[0] - 2.0 / 240.0) < 1e-9 && std::abs(key_times[1] - 3.0 / 240.0) < 1e-9);
     CHECK(std::abs(key_centres[1] - 0.2) < 1e-9 && std::abs(key_centres[4] - 0.3) < 1e-9);
 }
