@@ -39,7 +39,7 @@ def find_oclgrind():
 def kernels_of_the_library():
     """By the names of their launches."""
     listed = re.findall(r"^KERNEL_ENTRY\((\w+)", (SOURCE / "kernels" / "kernel_list.def").read_text(), re.MULTILINE)
-    sort = re.findall(r"^KERNEL void sort_(\w+)", (SOURCE / "backends/opencl/sort.cl").read_text(), re.MULTILINE)
+    sort = re.findall(r"^\w*KERNEL void sort_(\w+)", (SOURCE / "backends/gpu/sort.inl").read_text(), re.MULTILINE)
     assert len(listed) > 10
     assert len(sort) == 5
     return {*listed, *(f"sort: {name.replace('_', ' ')}" for name in sort)}

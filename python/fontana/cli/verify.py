@@ -27,7 +27,7 @@ def verify(as_json: bool) -> None:
     """Compare every backend and scheme here with the plain CPU reference, and print the disagreement.
 
     Density and acceleration are compared after one substep, positions after twenty, each as the largest difference over
-    the largest value. Where strict arithmetic and the scheme are the same, the CPU and OpenCL must agree bit for bit.
+    the largest value. Where strict arithmetic and the scheme are the same, all backends must agree bit for bit.
 
     \b
     Examples:

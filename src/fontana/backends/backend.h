@@ -116,7 +116,7 @@ class Backend {
 
 // Every device of every backend, and a line for each backend that has none, with the reason.
 std::vector<DeviceInfo> list_devices();
-// name: "auto", "cpu", "opencl".
+// name: "auto", "cpu", "cuda", "opencl".
 std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options);
 
 }  // namespace fontana

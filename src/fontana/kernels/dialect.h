@@ -20,6 +20,11 @@
 #define SQRT(a) sqrt(a)
 #define FLOOR(a) floor(a)
 #define ATOMIC_INCREMENT(p) atomic_inc(p)
+#define GROUP_KERNEL __kernel __attribute__((reqd_work_group_size(FONTANA_GROUP_SIZE, 1, 1)))
+#define LOCAL __local
+#define LANE_INDEX ((uint)get_local_id(0))
+#define GROUP_INDEX ((uint)get_group_id(0))
+#define BARRIER() barrier(CLK_LOCAL_MEM_FENCE)
 #define MAKE_FLOAT4(x, y, z, w) ((float4)((x), (y), (z), (w)))
 
 #elif defined(__CUDACC__)
@@ -33,6 +38,11 @@
 #define SQRT(a) sqrtf(a)
 #define FLOOR(a) floorf(a)
 #define ATOMIC_INCREMENT(p) atomicAdd((p), 1u)
+#define GROUP_KERNEL extern "C" __global__ __launch_bounds__(FONTANA_GROUP_SIZE)
+#define LOCAL __shared__
+#define LANE_INDEX ((uint)threadIdx.x)
+#define GROUP_INDEX ((uint)blockIdx.x)
+#define BARRIER() __syncthreads()
 #define MAKE_FLOAT4(x, y, z, w) make_float4((x), (y), (z), (w))
 typedef unsigned int uint;
 
