@@ -15,7 +15,7 @@ import pytest
 
 HERE = Path(__file__).parent
 SOURCE = HERE.parents[1] / "src" / "fontana"
-SMALL_RUN = HERE / "opencl_faults" / "small_run.py"
+SMALL_RUN = HERE / "small_run.py"
 LIBRARY = "liboclgrind-rt.so"
 # Inlining a function with restrict pointers leaves a mark in LLVM's code that this simulator does not know.
 WATCH = ("--data-races", "--check-api", "--build-options", "-cl-opt-disable")
@@ -50,7 +50,7 @@ def run_simulator(method, log):
     program, library = find_oclgrind()
     environment = os.environ | {"FONTANA_OPENCL_LIBRARY": str(library), "FONTANA_KERNEL_CACHE": "off"}
     environment.pop("OPENCL_LAYERS", None)
-    command = [program, *WATCH, "--log", log, sys.executable, SMALL_RUN, f"fluid.method={method}"]
+    command = [program, *WATCH, "--log", log, sys.executable, SMALL_RUN, "opencl", f"fluid.method={method}"]
     result = subprocess.run(command, env=environment, capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
     assert result.stderr == ""

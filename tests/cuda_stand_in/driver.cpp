@@ -7,6 +7,7 @@
 //
 // It has a device only where FONTANA_STAND_IN_DEVICES says how many. FONTANA_STAND_IN_CAPABILITY (75) is ten times its
 // compute capability, FONTANA_STAND_IN_MEMORY (1024) its memory in MiB, FONTANA_STAND_IN_COMPUTE_MODE (0) the mode.
+// FONTANA_STAND_IN_REFUSES_PTX=1 makes it a driver that is older than the compiler.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -267,6 +268,7 @@ DRIVER cuModuleLoadData(CUmodule* module, const void* image) {
                      4) == 0)
         return CUDA_ERROR_NO_BINARY_FOR_GPU;  // machine code of a real GPU
     if (!std::strstr(text, ".version")) return CUDA_ERROR_INVALID_IMAGE;
+    if (setting("FONTANA_STAND_IN_REFUSES_PTX", 0)) return CUDA_ERROR_UNSUPPORTED_PTX_VERSION;
     const stand_in::KernelCode* kernels = stand_in::load_program(text);
     if (!kernels) return CUDA_ERROR_INVALID_PTX;
     *module = new CUmod_st{context, kernels};

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <vector>
 
 #include "backends/cuda/cuda_types.h"
 #include "faults.h"
@@ -17,6 +18,13 @@ void* function_of_real(const char* name) {
     if (library) return dlsym(library, name);
     std::fprintf(stderr, "stand-in driver: FONTANA_STAND_IN_NVRTC: %s\n", dlerror());
     std::exit(1);
+}
+
+// With one option more where FONTANA_STAND_IN_NVRTC_OPTION gives it: to break a build.
+std::vector<const char*> extended(const char* const* options, int count) {
+    std::vector<const char*> all(options, options + count);
+    if (const char* more = std::getenv("FONTANA_STAND_IN_NVRTC_OPTION")) all.push_back(more);
+    return all;
 }
 
 }  // namespace
@@ -36,7 +44,7 @@ LAYER(nvrtcCreateProgram,
       (program, text, name, header_count, headers, header_names))
 LAYER(nvrtcDestroyProgram, (nvrtcProgram * program), (program))
 LAYER(nvrtcCompileProgram, (nvrtcProgram program, int option_count, const char* const* options),
-      (program, option_count, options))
+      (program, static_cast<int>(extended(options, option_count).size()), extended(options, option_count).data()))
 LAYER(nvrtcGetProgramLogSize, (nvrtcProgram program, std::size_t* bytes), (program, bytes))
 LAYER(nvrtcGetProgramLog, (nvrtcProgram program, char* log), (program, log))
 LAYER(nvrtcGetCUBINSize, (nvrtcProgram program, std::size_t* bytes), (program, bytes))

@@ -51,3 +51,9 @@ def environment(**settings: str) -> dict[str, str]:
     return {"FONTANA_CUDA_LIBRARY": str(library()), "FONTANA_STAND_IN_DEVICES": "1"} | {
         f"FONTANA_STAND_IN_{name.upper()}": value for name, value in settings.items()
     }
+
+
+def compiler_faults() -> dict[str, str]:
+    """The variables with which calls of NVRTC can be made to fail too: the stand-in goes between it and Fontana."""
+    real = os.environ.get("FONTANA_NVRTC_LIBRARY", "libnvrtc.so.12")
+    return {"FONTANA_NVRTC_LIBRARY": str(library()), "FONTANA_STAND_IN_NVRTC": real}
