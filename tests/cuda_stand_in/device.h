@@ -115,13 +115,6 @@ inline void store(const unsigned char* to, std::size_t index, T value) {
     std::memcpy(const_cast<unsigned char*>(to) + index * sizeof(T), &value, sizeof value);
 }
 
-template <typename T>
-inline T add_to(const unsigned char* memory, T value) {
-    const T before = load<T>(memory);
-    store<T>(memory, 0, static_cast<T>(before + value));
-    return before;
-}
-
 // ---- arithmetic where C++ and PTX differ ("Parallel Thread Execution ISA", docs.nvidia.com/cuda) ------------------
 
 // Of a number and a NaN the number; +0 is greater than -0.

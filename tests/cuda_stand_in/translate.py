@@ -53,6 +53,7 @@ RULES = (
     (r"mad\.lo\.(?P<t>\w+)", "w", "www", "{0} * {1} + {2}"),
     (r"mul\.wide\.u32", "u64", ("u32", "u32"), "std::uint64_t{{{0}}} * {1}"),
     (r"mul\.wide\.s32", "s64", ("s32", "s32"), "std::int64_t{{{0}}} * {1}"),
+    (r"mul\.hi\.u32", "u64", ("u32", "u32"), "std::uint64_t{{{0}}} * {1} >> 32"),
     (r"fma\.rn\.(?P<t>f32)", "t", "ttt", "std::fma({0}, {1}, {2})"),
     (r"neg\.(?P<t>f32)", "t", "t", "-{0}"),
     (r"neg\.(?P<t>s\d+)", "w", "w", "0 - {0}"),
@@ -104,7 +105,9 @@ def round_up(value: int, unit: int) -> int:
 
 
 def read_parameters(kernel: Kernel, text: str) -> None:
-    declared = re.findall(r"\.param\s+(?:\.align\s+(\d+)\s+)?\.(\w+)\s+(\w+)(?:\[(\d+)\])?", text)
+    declared = re.findall(
+        r"\.param\s+(?:\.align\s+(\d+)\s+)?\.(\w+)\s+(?:\.ptr\s+\.align\s+\d+\s+)?(\w+)(?:\[(\d+)\])?", text
+    )
     if len(declared) != text.count(".param"):
         raise UnknownPtxError(f"parameters of {kernel.name}: {text}")
     for align, kind, name, count in declared:
@@ -163,12 +166,40 @@ def split_operands(text: str) -> list[str]:
     return re.findall(r"\{[^}]*\}|[^,\s]+", text)
 
 
+def update(kernel: Kernel, opcode: str, operands: list[str]) -> str | None:
+    """C++ for an atomic sum, minimum or maximum; None for anything else. One thread runs at a time."""
+    found = re.fullmatch(r"(atom|red)(?:\.relaxed)?(?:\.gpu|\.cta)?\.(global|shared)\.(add|min|max)\.([us]32)", opcode)
+    if not found:
+        return None
+    form, space, operation, kind = found.groups()
+    result = [f"put({operands.pop(0)[1:]}, before);"] if form == "atom" else []
+    place = memory(kernel, space, operands[0], 4, "store")
+    combined = {"add": "{0} + {1}", "min": "minimum({0}, {1})", "max": "maximum({0}, {1})"}[operation]
+    return " ".join(
+        [
+            f"const unsigned char* place = {place};",
+            f"const auto before = load<{TYPES[kind]}>(place);",
+            f"const {TYPES[kind]} value = {operand(kernel, operands[1], kind)};",
+            f"store<{TYPES[kind]}>(place, 0, {combined.format('before', 'value')});",
+            *result,
+        ]
+    )
+
+
+def regroup(opcode: str, operands: list[str]) -> str | None:
+    """C++ for a register of 64 bits made of two, or taken apart; None for anything else."""
+    if opcode != "mov.b64" or "{" not in "".join(operands):
+        return None
+    target, source = operands
+    if target.startswith("{"):
+        halves = zip(split_operands(target.strip("{}")), ("", " >> 32"), strict=True)
+        return " ".join(f"put({name[1:]}, {source[1:]}{shift});" for name, shift in halves if name.startswith("%"))
+    low, high = (name[1:] for name in split_operands(source.strip("{}")))
+    return f"put({target[1:]}, std::uint64_t{{{high}}} << 32 | {low});"
+
+
 def move(kernel: Kernel, opcode: str, operands: list[str]) -> str | None:
-    """C++ for a load, a store or an atomic sum; None for anything else."""
-    if found := re.fullmatch(r"atom\.global\.add\.(\w+)", opcode):
-        kind = found[1]
-        place = memory(kernel, "global", operands[1], int(kind[1:]) // 8, "store")
-        return f"put({operands[0][1:]}, add_to<{TYPES[kind]}>({place}, {operand(kernel, operands[2], kind)}));"
+    """C++ for a load or a store; None for anything else."""
     found = re.fullmatch(r"(ld|st)\.(param|shared|global)(\.nc)?(?:\.v([24]))?\.(\w+)", opcode)
     if not found:
         return None
@@ -207,6 +238,9 @@ def compute(kernel: Kernel, opcode: str, operands: list[str]) -> str | None:
 
 
 def instruction(kernel: Kernel, line: str) -> str:
+    # One half of a register of 64 bits, the other into a name that nothing reads.
+    if found := re.fullmatch(r"\{ \.reg \.b32 \w+; (mov\.b64 \{.*)\}", line):
+        line = found[1].strip()
     found = re.fullmatch(r"(?:@(!?)%(\w+)\s+)?([\w.]+)\s*(.*);", line)
     if not found:
         raise UnknownPtxError(f"line in {kernel.name}: {line}")
@@ -220,7 +254,12 @@ def instruction(kernel: Kernel, line: str) -> str:
         kernel.has_barriers = True
         statement = "thread.launch->barrier(thread);"
     else:
-        statement = move(kernel, opcode, operands) or compute(kernel, opcode, operands)
+        statement = (
+            update(kernel, opcode, operands)
+            or regroup(opcode, operands)
+            or move(kernel, opcode, operands)
+            or compute(kernel, opcode, operands)
+        )
     if statement is None:
         raise UnknownPtxError(f"instruction in {kernel.name}: {line}")
     return f"if ({negated}{guard}) {{ {statement} }}" if guard else f"{{ {statement} }}"
@@ -238,7 +277,7 @@ def read_kernels(ptx: str) -> list[Kernel]:
     ):
         kernel = Kernel(name)
         read_parameters(kernel, parameters)
-        if found := re.fullmatch(r"\s*\.maxntid (\d+), 1, 1\s*", directives):
+        if found := re.fullmatch(r"\s*\.maxntid (\d+)(?:, 1, 1)?\s*", directives):
             kernel.most_threads = int(found[1])
         elif directives.strip():
             raise UnknownPtxError(f"directives of {name}: {directives}")
