@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "backends/backend.h"
+#include "backends/copy_bandwidth.h"
 #include "fontana.h"
 #include "scene/collider.h"
 #include "scene/emitter.h"
@@ -65,6 +66,7 @@ class Simulation {
     void check() const;
     const DeviceInfo& device() { return solver().backend().device(); }
     std::vector<ProfileRow> profile() { return solver().backend().profile(); }
+    double copy_bandwidth(std::size_t bytes) { return measure_copy_bandwidth(solver().backend(), bytes); }
     std::uint64_t memory_for(std::uint64_t particle_count) const;
 
  private:

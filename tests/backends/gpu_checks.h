@@ -199,6 +199,7 @@ void check_profile(Checks& checks, Device& device) {
     const std::vector<fontana::ProfileRow> rows = queue.profile();
     checks.expect(rows.size() == 1 && rows[0].name == "add offsets", "the profile has a row for each name");
     checks.expect(rows.size() == 1 && rows[0].launches == 2500 && rows[0].seconds > 0.0, "it counts every launch once");
+    checks.expect(rows.size() == 1 && rows[0].elements == 25000, "it counts what the launches went through");
 }
 
 template <typename Device>

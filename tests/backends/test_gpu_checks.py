@@ -22,7 +22,7 @@ def run(*command):
 
 def embed_kernels(target):
     cmake = shutil.which("cmake") or pytest.fail("the kernels are embedded by cmake, which is not on PATH")
-    roots = f"{SOURCE / 'kernels' / 'kernels.h'}|{BACKENDS / 'gpu' / 'sort.inl'}"
+    roots = "|".join(map(str, (SOURCE / "kernels/kernels.h", BACKENDS / "gpu/sort.inl", BACKENDS / "gpu/tiles.inl")))
     variables = {"OUTPUT": target, "SYMBOL": "gpu_kernel_text", "FOLDER": SOURCE / "kernels", "ROOTS": roots}
     run(cmake, *[f"-D{name}={value}" for name, value in variables.items()], "-P", ROOT / "cmake" / "EmbedKernels.cmake")
     return target

@@ -123,7 +123,7 @@ class CpuBackend : public Backend {
         const CpuKernel& code = kernels_[static_cast<std::size_t>(kernel)];
         void* addresses[16];
         collect(kernel, code, arguments, addresses);
-        timed(kernel_facts(kernel).name, [&] {
+        timed(kernel_facts(kernel).name, element_count(arguments), [&] {
             pool_.run(count, k_grain, [&](std::size_t begin, std::size_t end) { code.run(addresses, begin, end); });
         });
     }
@@ -132,7 +132,7 @@ class CpuBackend : public Backend {
         check_range(key, count * 4, 0);
         check_range(order, count * 4, 0);
         check_range(start, (key_count + 1) * 4, 0);
-        timed("sort", [&] {
+        timed("sort", count, [&] {
             sorter_.sort(pool_, reinterpret_cast<const std::uint32_t*>(data_of(key)), count, key_count,
                          reinterpret_cast<std::uint32_t*>(data_of(order)),
                          reinterpret_cast<std::uint32_t*>(data_of(start)));
@@ -172,7 +172,7 @@ class CpuBackend : public Backend {
     }
 
     template <typename Work>
-    void timed(const char* name, const Work& work) {
+    void timed(const char* name, std::uint64_t elements, const Work& work) {
         if (!profile_) {
             work();
             return;
@@ -182,6 +182,7 @@ class CpuBackend : public Backend {
         ProfileRow& row = rows_[name];
         row.name = name;
         ++row.launches;
+        row.elements += elements;
         row.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
 

@@ -5,6 +5,7 @@
 #include "backends/cuda/cuda_program.h"
 #include "backends/cuda/cuda_stream.h"
 #include "backends/gpu/device_sort.h"
+#include "backends/gpu/tiles.h"
 #include "util/error.h"
 
 namespace fontana {
@@ -20,7 +21,7 @@ class CudaBackend : public Backend {
           }) {
         for (int i = 0; i < static_cast<int>(Kernel::count); ++i) {
             const char* name = kernel_facts(static_cast<Kernel>(i)).name;
-            kernels_.emplace_back(stream_, program_.get(), name, name);
+            kernels_.emplace_back(stream_, program_.get(), function_of(name, options.tiles), name);
         }
     }
 

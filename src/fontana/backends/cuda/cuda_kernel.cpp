@@ -56,7 +56,7 @@ void CudaKernel::launch(CudaStream& stream, std::size_t thread_count, KernelArgu
         addresses[index] = argument.buffer() ? &memory[index] : const_cast<void*>(argument.value());
         ++index;
     }
-    stream.launch(function_, thread_count, group_size_, addresses, label_);
+    stream.launch(function_, thread_count, group_size_, addresses, label_, element_count(arguments));
 }
 
 void CudaKernel::require_fitting(KernelArguments arguments) const {

@@ -69,19 +69,19 @@ void CudaStream::clear(Buffer& buffer, std::size_t bytes, const std::string& lab
     if (bytes == 0) return;
     const CurrentContext current(*context_);
     check(current);
-    timed(label, [&] {
+    timed(label, bytes / 4, [&] {
         check(cuda().cuMemsetD32Async(memory_of(buffer), 0, bytes / 4, stream_.get()), "clearing", buffer.name());
     });
 }
 
 void CudaStream::launch(CUfunction function, std::size_t thread_count, std::size_t group_size, void** arguments,
-                        const std::string& label) {
+                        const std::string& label, std::uint64_t elements) {
     require_alive();
     if (thread_count == 0) return;
     const CurrentContext current(*context_);
     check(current);
     const auto group_count = static_cast<unsigned>((thread_count + group_size - 1) / group_size);
-    timed(label, [&] {
+    timed(label, elements, [&] {
         check(cuda().cuLaunchKernel(function, group_count, 1, 1, static_cast<unsigned>(group_size), 1, 1, 0,
                                     stream_.get(), arguments, nullptr),
               "running the kernel", label);
@@ -105,7 +105,7 @@ std::vector<ProfileRow> CudaStream::profile() {
 }
 
 template <typename Enqueue>
-void CudaStream::timed(const std::string& label, const Enqueue& enqueue) {
+void CudaStream::timed(const std::string& label, std::uint64_t elements, const Enqueue& enqueue) {
     if (!profile_) {
         enqueue();
         return;
@@ -114,7 +114,7 @@ void CudaStream::timed(const std::string& label, const Enqueue& enqueue) {
     timer.begin = record_event();
     enqueue();
     timer.end = record_event();
-    profile_->add(label, std::move(timer));
+    profile_->add(label, elements, std::move(timer));
     if (profile_->is_full()) collect_profile();
 }
 

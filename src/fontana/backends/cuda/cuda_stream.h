@@ -42,9 +42,9 @@ class CudaStream {
     void copy(const Buffer& from, Buffer& to, std::size_t bytes);
     void clear(Buffer& buffer, std::size_t bytes, const std::string& label);
     // `arguments` holds the address of each argument and a null at its end. `label` is the kernel's name in the profile
-    // and in errors.
+    // and in errors, `elements` what it goes through (ProfileRow).
     void launch(CUfunction function, std::size_t thread_count, std::size_t group_size, void** arguments,
-                const std::string& label);
+                const std::string& label, std::uint64_t elements);
     void finish();
     std::vector<ProfileRow> profile();
 
@@ -62,7 +62,7 @@ class CudaStream {
     void synchronize(const char* doing, const std::string& name);
     // Does `enqueue`, which returns a code, between two events where a profile is wanted.
     template <typename Enqueue>
-    void timed(const std::string& label, const Enqueue& enqueue);
+    void timed(const std::string& label, std::uint64_t elements, const Enqueue& enqueue);
     CudaEvent record_event();
     void collect_profile();
     [[noreturn]] void fail_to_allocate(const std::string& name, std::size_t bytes) const;

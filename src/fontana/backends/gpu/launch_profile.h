@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,9 +16,10 @@ namespace fontana {
 template <typename Event>
 class LaunchProfile {
  public:
-    void add(const std::string& label, Event event) {
+    void add(const std::string& label, std::uint64_t elements, Event event) {
         const std::size_t row = row_of(label);
         ++rows_[row].launches;
+        rows_[row].elements += elements;
         pending_.emplace_back(row, std::move(event));
     }
 

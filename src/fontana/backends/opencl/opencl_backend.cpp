@@ -1,6 +1,7 @@
 #include "backends/opencl/opencl_backend.h"
 
 #include "backends/gpu/device_sort.h"
+#include "backends/gpu/tiles.h"
 #include "backends/opencl/opencl_devices.h"
 #include "backends/opencl/opencl_kernel.h"
 #include "backends/opencl/opencl_program.h"
@@ -20,7 +21,7 @@ class OpenClBackend : public Backend {
           }) {
         for (int i = 0; i < static_cast<int>(Kernel::count); ++i) {
             const char* name = kernel_facts(static_cast<Kernel>(i)).name;
-            kernels_.emplace_back(queue_.device(), program_.get(), name, name);
+            kernels_.emplace_back(queue_.device(), program_.get(), function_of(name, options.tiles), name);
         }
     }
 

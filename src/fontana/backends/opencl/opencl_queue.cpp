@@ -82,11 +82,11 @@ void CommandQueue::clear(Buffer& buffer, std::size_t bytes, const std::string& l
     check(opencl().clEnqueueFillBuffer(queue_.get(), memory_of(buffer), &zero, sizeof zero, 0, bytes, 0, nullptr,
                                        profile_ ? &event : nullptr),
           "clearing", buffer.name());
-    note(event, label);
+    note(event, label, bytes / sizeof zero);
 }
 
-void CommandQueue::launch(cl_kernel kernel, std::size_t thread_count, std::size_t group_size,
-                          const std::string& label) {
+void CommandQueue::launch(cl_kernel kernel, std::size_t thread_count, std::size_t group_size, const std::string& label,
+                          std::uint64_t elements) {
     require_alive();
     if (thread_count == 0) return;
     const std::size_t global_size = round_up(thread_count, group_size);
@@ -94,7 +94,7 @@ void CommandQueue::launch(cl_kernel kernel, std::size_t thread_count, std::size_
     check(opencl().clEnqueueNDRangeKernel(queue_.get(), kernel, 1, nullptr, &global_size, &group_size, 0, nullptr,
                                           profile_ ? &event : nullptr),
           "running the kernel", label);
-    note(event, label);
+    note(event, label, elements);
 }
 
 void CommandQueue::finish() {
@@ -108,9 +108,9 @@ std::vector<ProfileRow> CommandQueue::profile() {
     return profile_->rows();
 }
 
-void CommandQueue::note(cl_event event, const std::string& label) {
+void CommandQueue::note(cl_event event, const std::string& label, std::uint64_t elements) {
     if (!event) return;
-    profile_->add(label, OpenClEvent(event));
+    profile_->add(label, elements, OpenClEvent(event));
     if (profile_->is_full()) collect_profile();
 }
 

@@ -41,8 +41,10 @@ class CommandQueue {
     void read(const Buffer& from, void* to, std::size_t bytes, std::size_t offset);
     void copy(const Buffer& from, Buffer& to, std::size_t bytes);
     void clear(Buffer& buffer, std::size_t bytes, const std::string& label);
-    // Runs a kernel whose arguments are set. `label` is its name in the profile and in errors.
-    void launch(cl_kernel kernel, std::size_t thread_count, std::size_t group_size, const std::string& label);
+    // Runs a kernel whose arguments are set. `label` is its name in the profile and in errors, `elements` what it goes
+    // through (ProfileRow).
+    void launch(cl_kernel kernel, std::size_t thread_count, std::size_t group_size, const std::string& label,
+                std::uint64_t elements);
     void finish();
     std::vector<ProfileRow> profile();
 
@@ -52,7 +54,7 @@ class CommandQueue {
     void require_alive() const;
 
  private:
-    void note(cl_event event, const std::string& label);
+    void note(cl_event event, const std::string& label, std::uint64_t elements);
     void collect_profile();
 
     OpenClDevice device_;
