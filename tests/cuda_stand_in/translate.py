@@ -277,7 +277,7 @@ def read_kernels(ptx: str) -> list[Kernel]:
     ):
         kernel = Kernel(name)
         read_parameters(kernel, parameters)
-        if found := re.fullmatch(r"\s*\.maxntid (\d+)(?:, 1, 1)?\s*", directives):
+        if found := re.fullmatch(r"\s*\.maxntid (\d+)(?:, 1, 1)?\s*(?:\.minnctapersm 1\s*)?", directives):
             kernel.most_threads = int(found[1])
         elif directives.strip():
             raise UnknownPtxError(f"directives of {name}: {directives}")
