@@ -1,9 +1,10 @@
 // Compiles only if our declarations of the CUDA driver and NVRTC agree with their maker's headers: the same number of
-// parameters, each of the same size and kind, and the same numbers for constants.
+// parameters, each of the same size and kind, the same symbols, and the same numbers for constants.
 #include <cuda.h>
 #include <nvrtc.h>
 
 #include <cstddef>
+#include <string_view>
 #include <type_traits>
 
 #include "backends/cuda/cuda_types.h"
@@ -59,8 +60,11 @@ using fontana::nvrtcResult;
 
 }  // namespace ours
 
-#define CUDA_FUNCTION(name, symbol, parameters) \
-    static_assert(Agree<ours::Of_##name, decltype(&::name)>::value(), #name);
+// The header turns some plain names into those of the symbols, by macros.
+#define TEXT(word) #word
+#define CUDA_FUNCTION(name, symbol, parameters)                               \
+    static_assert(Agree<ours::Of_##name, decltype(&::name)>::value(), #name); \
+    static_assert(std::string_view(TEXT(name)) == symbol, #name);
 #define OPTIONAL_CUDA_FUNCTION CUDA_FUNCTION
 #define NVRTC_FUNCTION(name, result, parameters) CUDA_FUNCTION(name, #name, parameters)
 #include "backends/cuda/cuda_functions.def"
