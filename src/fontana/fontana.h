@@ -218,7 +218,7 @@ FONTANA_API fontana_status fontana_check(fontana_simulation*);
 /* ---- devices ------------------------------------------------------------------------------------------------ */
 
 typedef struct fontana_device {
-    const char* backend; /* "cpu", "opencl" */
+    const char* backend; /* "cpu", "cuda", "opencl" */
     const char* name;    /* the device's own */
     const char* driver;  /* vendor and version */
     uint64_t memory_bytes;

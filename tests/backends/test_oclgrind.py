@@ -15,7 +15,7 @@ import pytest
 
 HERE = Path(__file__).parent
 SOURCE = HERE.parents[1] / "src" / "fontana"
-SMALL_RUN = HERE / "opencl_faults" / "small_run.py"
+SMALL_RUN = HERE / "small_run.py"
 LIBRARY = "liboclgrind-rt.so"
 # Inlining a function with restrict pointers leaves a mark in LLVM's code that this simulator does not know.
 WATCH = ("--data-races", "--check-api", "--build-options", "-cl-opt-disable")
@@ -39,7 +39,7 @@ def find_oclgrind():
 def kernels_of_the_library():
     """By the names of their launches."""
     listed = re.findall(r"^KERNEL_ENTRY\((\w+)", (SOURCE / "kernels" / "kernel_list.def").read_text(), re.MULTILINE)
-    sort = re.findall(r"^KERNEL void sort_(\w+)", (SOURCE / "backends/opencl/sort.cl").read_text(), re.MULTILINE)
+    sort = re.findall(r"^\w*KERNEL void sort_(\w+)", (SOURCE / "backends/gpu/sort.inl").read_text(), re.MULTILINE)
     assert len(listed) > 10
     assert len(sort) == 5
     return {*listed, *(f"sort: {name.replace('_', ' ')}" for name in sort)}
@@ -51,7 +51,7 @@ def run_simulator(method, neighbors, log):
     environment = os.environ | {"FONTANA_OPENCL_LIBRARY": str(library), "FONTANA_KERNEL_CACHE": "off"}
     environment.pop("OPENCL_LAYERS", None)
     settings = [f"fluid.method={method}", f"solver.neighbors={neighbors}"]
-    command = [program, *WATCH, "--log", log, sys.executable, SMALL_RUN, *settings]
+    command = [program, *WATCH, "--log", log, sys.executable, SMALL_RUN, "opencl", *settings]
     result = subprocess.run(command, env=environment, capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
     assert result.stderr == ""

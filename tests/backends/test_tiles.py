@@ -5,7 +5,12 @@ import pytest
 
 from fontana import _core
 
-pytestmark = pytest.mark.usefixtures("opencl_device")
+
+@pytest.fixture(params=["cuda", "opencl"])
+def gpu(request, use_backend):
+    use_backend(request.param)
+    return request.param
+
 
 SPACING = 0.02  # m; cells are two spacings wide
 ATTRIBUTES = ("position", "velocity", "density", "pressure", "acceleration")
@@ -35,8 +40,8 @@ CLOUDS = {
 }
 
 
-def run(make_simulation, neighbors, position, **parameters):
-    simulation = make_simulation("opencl", neighbors, time__timestep=0.002, time__substeps=20, **parameters)
+def run(make_simulation, gpu, neighbors, position, **parameters):
+    simulation = make_simulation(gpu, neighbors, time__timestep=0.002, time__substeps=20, **parameters)
     simulation.add_particles(position)
     simulation.add_collider("plane_y", centre=(0.0, -0.01, 0.0))
     simulation.step_frame()
@@ -44,24 +49,23 @@ def run(make_simulation, neighbors, position, **parameters):
 
 
 @pytest.mark.parametrize("cloud", CLOUDS)
-def test_tiles_agree_with_the_grid_bit_for_bit(make_simulation, cloud):
-    tiles, grid = (
-        run(make_simulation, neighbors, CLOUDS[cloud], solver__precision="strict") for neighbors in ("tiles", "grid")
-    )
+def test_tiles_agree_with_the_grid_bit_for_bit(gpu, make_simulation, cloud):
+    runs = (run(make_simulation, gpu, name, CLOUDS[cloud], solver__precision="strict") for name in ("tiles", "grid"))
+    tiles, grid = runs
     for name in ATTRIBUTES:
         assert np.array_equal(tiles[name], grid[name]), name
     assert np.isfinite(tiles["position"]).all()
 
 
-def test_fast_arithmetic_agrees_within_tolerance(make_simulation):
-    tiles, grid = (run(make_simulation, neighbors, CLOUDS["block"]) for neighbors in ("tiles", "grid"))
+def test_fast_arithmetic_agrees_within_tolerance(gpu, make_simulation):
+    tiles, grid = (run(make_simulation, gpu, neighbors, CLOUDS["block"]) for neighbors in ("tiles", "grid"))
     assert np.abs(tiles["density"] / grid["density"] - 1.0).max() < 2e-6
     assert np.abs(tiles["position"] - grid["position"]).max() < 1e-6
 
 
-def test_the_scheme_may_change_between_frames(make_simulation):
+def test_the_scheme_may_change_between_frames(gpu, make_simulation):
     settings = {"solver__precision": "strict", "time__timestep": 0.001, "time__substeps": 3}
-    stay, move = (make_simulation("opencl", **settings) for _ in range(2))
+    stay, move = (make_simulation(gpu, **settings) for _ in range(2))
     for simulation in (stay, move):
         simulation.add_particles(CLOUDS["block"])
     for neighbors in ("grid", "tiles", "grid"):
@@ -72,8 +76,8 @@ def test_the_scheme_may_change_between_frames(make_simulation):
         assert np.array_equal(stay.read(name), move.read(name)), name
 
 
-def test_tiles_are_counted_under_the_names_of_the_kernels(make_simulation):
-    simulation = make_simulation("opencl", "tiles", solver__profile=True, time__timestep=0.001, time__substeps=2)
+def test_tiles_are_counted_under_the_names_of_the_kernels(gpu, make_simulation):
+    simulation = make_simulation(gpu, "tiles", solver__profile=True, time__timestep=0.001, time__substeps=2)
     simulation.add_particles(CLOUDS["odd"])
     simulation.step_frame()
     rows = {row.name: row for row in simulation.profile()}
@@ -82,12 +86,12 @@ def test_tiles_are_counted_under_the_names_of_the_kernels(make_simulation):
 
 
 @pytest.mark.parametrize("method", ["dfsph", "pcisph", "wcsph"])
-def test_other_methods_are_refused(make_simulation, method):
-    simulation = make_simulation("opencl", "tiles", fluid__method=method)
+def test_other_methods_are_refused(gpu, make_simulation, method):
+    simulation = make_simulation(gpu, "tiles", fluid__method=method)
     with pytest.raises(_core.BadInput, match=f"choice of fluid.method=mueller, and the method is {method}.*=grid"):
         simulation.check()
 
 
 def test_the_cpu_is_refused(make_simulation):
-    with pytest.raises(_core.BadInput, match="choice of the opencl backend and the run is on cpu: use .*=grid"):
+    with pytest.raises(_core.BadInput, match="choice of the backends for GPUs and the run is on cpu: use .*=grid"):
         make_simulation("cpu", "tiles").device()

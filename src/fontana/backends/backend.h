@@ -101,7 +101,7 @@ struct ProfileRow {
 struct BackendOptions {
     bool strict = false;   // no contracted or reassociated arithmetic
     bool profile = false;  // time every launch
-    bool tiles = false;    // opencl: candidates through local memory (backends/gpu/tiles.inl)
+    bool tiles = false;    // cuda, opencl: candidates through local memory (backends/gpu/tiles.inl)
     int threads = 0;       // cpu: 0 is one per core
     int device = 0;        // index within the backend
 };
@@ -135,7 +135,7 @@ class Backend {
 
 // Every device of every backend, and a line for each backend that has none, with the reason.
 std::vector<DeviceInfo> list_devices();
-// name: "auto", "cpu", "opencl".
+// name: "auto", "cpu", "cuda", "opencl".
 std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options);
 
 }  // namespace fontana

@@ -3,6 +3,7 @@
 
 #include "backends/backend.h"
 #include "backends/cpu/cpu_backend.h"
+#include "backends/cuda/cuda_backend.h"
 #include "backends/opencl/opencl_backend.h"
 #include "util/error.h"
 
@@ -15,9 +16,11 @@ struct BackendEntry {
     std::function<std::unique_ptr<Backend>(const BackendOptions&)> make;
 };
 
+// In the order in which "auto" looks for a GPU.
 const std::vector<BackendEntry>& backends() {
     static const std::vector<BackendEntry> entries = {
         {"cpu", list_cpu_devices, make_cpu_backend},
+        {"cuda", list_cuda_devices, make_cuda_backend},
         {"opencl", list_opencl_devices, make_opencl_backend},
     };
     return entries;
@@ -39,9 +42,9 @@ std::unique_ptr<Backend> make_first_gpu(BackendOptions options) {
 
 std::unique_ptr<Backend> require_tiles(std::unique_ptr<Backend> backend, const BackendOptions& options) {
     const std::string& name = backend->device().backend;
-    if (options.tiles && name != "opencl")
-        fail(FONTANA_BAD_INPUT, "solver.neighbors=tiles is a choice of the opencl backend and the run is on " + name +
-                                    ": use solver.backend=opencl or solver.neighbors=grid");
+    if (options.tiles && name == "cpu")
+        fail(FONTANA_BAD_INPUT, "solver.neighbors=tiles is a choice of the backends for GPUs and the run is on " +
+                                    name + ": use solver.backend=cuda or opencl, or solver.neighbors=grid");
     return backend;
 }
 
@@ -76,7 +79,7 @@ std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOpti
     }
     for (const BackendEntry& entry : backends())
         if (name == entry.name) return require_tiles(entry.make(options), options);
-    fail(FONTANA_BAD_INPUT, "no backend '" + name + "': expected auto, cpu or opencl");
+    fail(FONTANA_BAD_INPUT, "no backend '" + name + "': expected auto, cpu, cuda or opencl");
 }
 
 }  // namespace fontana

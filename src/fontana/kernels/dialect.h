@@ -56,7 +56,8 @@
 #define ATOMIC_MAXIMUM(p, value) atomicMax((p), (value))
 #define ATOMIC_ADD(p, value) atomicAdd((p), (value))
 #define ATOMIC_INCREMENT(p) atomicAdd((p), 1u)
-#define GROUP_KERNEL extern "C" __global__ __launch_bounds__(FONTANA_GROUP_SIZE)
+// The 1, a group to a unit at the least, is what keeps NVIDIA's assembler from spilling registers to fit more of them.
+#define GROUP_KERNEL extern "C" __global__ __launch_bounds__(FONTANA_GROUP_SIZE, 1)
 #define LOCAL __shared__
 #define LANE_INDEX ((uint)threadIdx.x)
 #define GROUP_INDEX ((uint)blockIdx.x)

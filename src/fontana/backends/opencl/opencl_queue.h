@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "backends/backend.h"
+#include "backends/gpu/launch_profile.h"
 #include "backends/opencl/opencl_api.h"
 #include "backends/opencl/opencl_devices.h"
-#include "backends/opencl/opencl_profile.h"
 
 namespace fontana {
 
@@ -60,8 +60,8 @@ class CommandQueue {
     OpenClDevice device_;
     OpenClContext context_;
     OpenClQueue queue_;
-    std::unique_ptr<LaunchProfile> profile_;  // null: no profile wanted
-    std::string lost_;                        // what was said when the device was lost
+    std::unique_ptr<LaunchProfile<OpenClEvent>> profile_;  // null: no profile wanted
+    std::string lost_;                                     // what was said when the device was lost
 };
 
 }  // namespace fontana
