@@ -165,7 +165,7 @@ def _wall_outline(inner: float, outer: float, bottom: float, top: float) -> tupl
 
 
 def _revolve(outline: np.ndarray, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Turns an outline (K, 2) of radius and height around Y: triangles (V, 3) and their normals, front faces outward."""
+    """Turns outline (K, 2) of radius and height around Y: triangles (V, 3), front faces outward, and their normals."""
     angle = np.linspace(0.0, 2.0 * np.pi, _SEGMENTS + 1)
     around = np.stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)], axis=1)
 
