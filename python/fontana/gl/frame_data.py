@@ -26,7 +26,8 @@ class FrameData:
     id            (N,)
     radius        m, half the particle spacing
     rest_density  kg/m^3
-    centres       (M, 3) m, where the colliders of the stage are now
+    centres       (M, 3) m, where the colliders of the stage are now; none: where the scene puts them
+    time          s
     """
 
     position: np.ndarray
@@ -37,6 +38,7 @@ class FrameData:
     radius: float
     rest_density: float
     centres: Sequence[np.ndarray] = ()
+    time: float = 0.0
 
     @property
     def particle_count(self) -> int:

@@ -2,10 +2,10 @@
 uniform vec3 sun_direction;    // towards the sun, unit
 uniform sampler3D noise_cube;  // white noise, repeated
 
-const vec3 SUN_COLOUR = vec3(2.35, 2.12, 1.78);
+const vec3 SUN_COLOUR = vec3(3.10, 2.72, 2.20);
 const vec3 SKY_ZENITH = vec3(0.11, 0.26, 0.58);
 const vec3 SKY_HORIZON = vec3(0.62, 0.74, 0.86);
-const vec3 GROUND_COLOUR = vec3(0.33, 0.30, 0.27);
+const vec3 GROUND_COLOUR = vec3(0.21, 0.19, 0.165);
 
 float noise(vec3 p) {
     vec3 cell = floor(p);
@@ -36,6 +36,6 @@ vec3 surroundings(vec3 direction) {
 
 // The light of sky and ground on a surface that sees all of both.
 vec3 ambient_light(vec3 normal) {
-    vec3 above = 0.5 * (SKY_ZENITH + SKY_HORIZON) * 1.15;
-    return mix(GROUND_COLOUR * 0.55, above, 0.5 + 0.5 * normal.y);
+    vec3 above = 0.5 * (SKY_ZENITH + SKY_HORIZON) * 0.72;
+    return mix(GROUND_COLOUR * 0.35, above, 0.5 + 0.5 * normal.y);
 }

@@ -22,26 +22,27 @@ vec3 bumped(vec3 n, vec3 p, float strength) {
     return normalize(n - strength * slope / step_size);
 }
 
-// Square slabs with joints that fade where they get too fine to see.
+// Slabs in running bond, with joints that fade where they get too fine to see.
 Surface ground() {
-    vec2 at = place.xz / (0.16 * stage_size);
+    vec2 at = place.xz / (vec2(0.21, 0.14) * stage_size);
+    at.x += 0.5 * mod(floor(at.y), 2.0);
     vec2 slab = floor(at), within = at - slab;
-    float tone = noise(vec3(slab * 1.7, 0.5));
-    vec2 blur = max(fwidth(at), 1e-5);
-    vec2 edge = min(within, 1.0 - within);
-    vec2 joint = (1.0 - smoothstep(vec2(0.012), 0.012 + 1.5 * blur, edge)) * clamp(0.05 / blur, 0.0, 1.0);
-    float stain = fractal_noise(place * 9.0 / stage_size);
-    float grain = fractal_noise(place * 90.0 / stage_size);
-    vec3 albedo = mix(vec3(0.36, 0.335, 0.305), vec3(0.46, 0.43, 0.39), tone);
-    albedo *= 0.72 + 0.35 * stain + 0.30 * grain;
-    albedo *= 1.0 - 0.55 * max(joint.x, joint.y);
-    return Surface(albedo, normal);
+    vec2 blur = max(fwidth(place.xz / (vec2(0.21, 0.14) * stage_size)), 1e-5);
+    vec2 edge = min(within, 1.0 - within) * vec2(1.5, 1.0);
+    vec2 joint = (1.0 - smoothstep(vec2(0.008), 0.018 + 1.5 * blur, edge)) * clamp(0.06 / blur, 0.0, 1.0);
+    float tone = mix(noise(vec3(slab * 1.7, 0.5)), 0.5, clamp(2.0 * max(blur.x, blur.y), 0.0, 1.0));
+    float stain = fractal_noise(place * 7.0 / stage_size);
+    float grain = fractal_noise(place * 120.0 / stage_size);
+    vec3 albedo = mix(vec3(0.115, 0.110, 0.105), vec3(0.175, 0.162, 0.148), tone);
+    albedo *= 0.62 + 0.50 * stain + 0.36 * grain;
+    albedo *= 1.0 - 0.5 * max(joint.x, joint.y);
+    return Surface(albedo, bumped(normal, place * 60.0 / stage_size, 0.05));
 }
 
 Surface stone() {
     vec3 p = place / stage_size;
     float speckle = noise(p * 260.0) * noise(p * 170.0 + 3.0);
-    vec3 albedo = vec3(0.52, 0.48, 0.42) * (0.66 + 0.55 * fractal_noise(p * 14.0) + 0.22 * (speckle - 0.25));
+    vec3 albedo = vec3(0.40, 0.355, 0.30) * (0.66 + 0.55 * fractal_noise(p * 14.0) + 0.22 * (speckle - 0.25));
     return Surface(albedo, bumped(normal, p * 60.0, 0.10));
 }
 
@@ -65,7 +66,7 @@ void main() {
     vec3 shaded = lit(surface.albedo, place, n, normalize(surface.facing));
     if (material == 0) {
         float far = length(place - stage_middle) / stage_size;
-        shaded = mix(shaded, SKY_HORIZON * 0.9, 1.0 - exp(-max(far - 3.0, 0.0) / 16.0));
+        shaded = mix(shaded, SKY_HORIZON * 0.9, 1.0 - exp(-max(far - 2.0, 0.0) / 14.0));
     }
     colour = vec4(shaded, 1.0);
     depth = view_depth;
