@@ -80,7 +80,7 @@ class Look:
     color_range: tuple[float, float] | None = None
     color_map: str = "turbo"
     samples: int = 1
-    absorption: Sequence[float] = field(default=(5.2, 1.25, 0.85))  # by red, green, blue, over the size of the stage
+    absorption: Sequence[float] = field(default=(5.0, 1.15, 0.55))  # by red, green, blue, over the size of the stage
 
     def __post_init__(self) -> None:
         for name, value, known in (
