@@ -38,6 +38,8 @@ class Renderer:
 
     set_stage once for a scene, set_frame once for a frame, draw as often as the picture changes. What stands in the
     context's state (flags, blending, bound framebuffer and textures) is not restored.
+
+    targets  the textures of the last picture, depth and thickness of the water among them
     """
 
     def __init__(self, context: object):
@@ -56,15 +58,15 @@ class Renderer:
         self._triangles = {name: context.vertex_array(program, []) for name, program in self._screen.items()}
         self._noise = self._make_noise()
         self._color_maps: dict[str, object] = {}
-        self._stage: Stage | None = None
+        self._stage = Stage(context)
+        self._has_stage = False
         self._frame: FrameData | None = None
-        self._targets: Targets | None = None
+        self.targets: Targets | None = None
 
     def set_stage(self, colliders: Sequence[dict], bounds: np.ndarray) -> None:
         """The colliders of the scene and the box (2, 3) in metres that holds what is worth seeing."""
-        if self._stage:
-            self._stage.release()
-        self._stage = Stage(self.context, colliders, bounds)
+        self._stage.load(colliders, bounds)
+        self._has_stage = True
 
     def set_frame(self, frame: FrameData) -> None:
         """Uploads the particles of a frame."""
@@ -73,7 +75,7 @@ class Renderer:
 
     def draw(self, camera: Camera, size: tuple[int, int], look: Look, target: object) -> None:
         """Draws into `target`, a framebuffer of `size` pixels; a size without pixels draws nothing."""
-        if min(size) < 1 or self._stage is None or self._frame is None:
+        if min(size) < 1 or not self._has_stage or self._frame is None:
             return
         targets = self._targets_of(size)
         targets.averaged.clear(0.0, 0.0, 0.0, 0.0)
@@ -165,11 +167,11 @@ class Renderer:
         self._triangles[name].render(self.context.TRIANGLES, vertices=3)
 
     def _targets_of(self, size: tuple[int, int]) -> Targets:
-        if self._targets is None or self._targets.size != size:
-            if self._targets:
-                self._targets.release()
-            self._targets = Targets(self.context, size)
-        return self._targets
+        if self.targets is None or self.targets.size != size:
+            if self.targets:
+                self.targets.release()
+            self.targets = Targets(self.context, size)
+        return self.targets
 
     def _color_map(self, name: str) -> object:
         if name not in self._color_maps:
