@@ -171,7 +171,7 @@ def test_without_moderngl_there_is_a_sentence(monkeypatch):
 @pytest.mark.parametrize(("name", "film"), [("x.mp4", True), ("p/x.####.png", False)])
 def test_ctrl_c_keeps_what_is_drawn(run_folder, tmp_path, name, film):
     """The signal goes to the whole group, as a terminal sends it."""
-    call = fontana_command("render", run_folder, "-o", name, "--size", "320x200", "--samples", 24, "--json")
+    call = fontana_command("render", run_folder, "-o", name, "--size", "240x160", "--samples", 6, "--json")
     process = subprocess.Popen(
         call, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -127,6 +128,25 @@ def test_fast_drops_alone_are_white(renderer):
         picture(renderer, frame(positions, v, 0.025, density=thin), [FLOOR], ABOVE, FLUID) for v in (0.0, 3.0)
     )
     assert fast[35:55, 45:75].mean() > slow[35:55, 45:75].mean() + 15
+
+
+def test_an_open_shutter_draws_what_moves_along_its_way(renderer):
+    """A drop and a rock at 4 m/s, exposed for 0.1 s, are as wide as themselves and 0.4 m; what rests is sharp."""
+    rock = {"type": "sphere_outside", "radius": 0.1}
+    widths = {}
+    for shutter in (0.0, 0.1):
+        look = replace(FLUID, samples=24, shutter=shutter)
+        data = frame([[0.0, 0.7, 0.0]], 4.0, 0.05, centres=[np.array([0.0, 0.3, 0.0])])
+        moving = replace(data, centre_velocities=[np.array([4.0, 0.0, 0.0])])
+        nothing = picture(renderer, NOBODY, look=look)
+        seen = changed(picture(renderer, moving, [rock], look=look), nothing, 2.0)
+        halves = seen[:45], seen[45:]
+        widths[shutter] = [np.ptp(np.nonzero(half)[1]) for half in halves]
+        resting = changed(picture(renderer, data, [rock], look=look), nothing, 2.0)[45:]
+        assert np.ptp(np.nonzero(resting)[1]) == pytest.approx(8, abs=3)
+    scale = SIZE[1] / (2 * np.tan(np.radians(15)) * 4.0)
+    grown = np.subtract(widths[0.1], widths[0.0])
+    assert grown == pytest.approx([0.4 * scale, 0.4 * scale], abs=3.0)
 
 
 def draw_reference(renderer) -> np.ndarray:
