@@ -87,13 +87,13 @@ def test_deep_water_takes_the_red_first(renderer):
 
 
 def test_water_bends_what_is_behind_it(renderer):
-    """A ball of water is a lens: a wall that begins 0.12 m from the axis is far from the axis in the ball."""
+    """A round front of water is a lens: a wall that begins near its axis is seen far from it."""
     wall, edge = {"type": "plane_z", "centre": [0, 0, -0.9]}, {"type": "plane_x", "centre": [0.12, 0, 0]}
-    ball = block([-0.4, 0.1, -0.4], [0.4, 0.9, 0.4], 0.05)
-    ball = ball[np.linalg.norm(ball - [0, 0.5, 0], axis=1) < 0.4]
+    rod = block([-0.4, 0.1, -0.9], [0.4, 0.9, 0.4], 0.05)
+    rod = rod[np.linalg.norm((rod - [0, 0.5, 0]) * np.where(rod[:, 2:] < 0, [1, 1, 0], 1), axis=1) < 0.4]
     camera = Camera.looking([0.0, 0.5, 4.0], [0.0, 0.5, 0.0], 20.0)
     dry = picture(renderer, NOBODY, [wall, edge], camera)[45]
-    wet = picture(renderer, frame(ball, radius=0.025), [wall, edge], camera, CLEAR)[45]
+    wet = picture(renderer, frame(rod, radius=0.025), [wall, edge], camera, CLEAR)[45]
     beside, on_wall = dry[50:58].mean(axis=0), dry[70:78].mean(axis=0)
     assert np.abs(beside - on_wall).max() > 20
 
@@ -142,10 +142,10 @@ def test_an_open_shutter_draws_what_moves_along_its_way(renderer):
         data = frame([[0.0, 0.7, 0.0]], 4.0, 0.05, centres=[np.array([0.0, 0.3, 0.0])])
         moving = replace(data, centre_velocities=[np.array([4.0, 0.0, 0.0])])
         nothing = picture(renderer, NOBODY, look=look)
-        seen = changed(picture(renderer, moving, [rock], look=look), nothing, 2.0)
+        seen = changed(picture(renderer, moving, [rock], look=look), nothing, 0.9)
         halves = seen[:45], seen[45:]
         widths[shutter] = [np.ptp(np.nonzero(half)[1]) for half in halves]
-        resting = changed(picture(renderer, data, [rock], look=look), nothing, 2.0)[45:]
+        resting = changed(picture(renderer, data, [rock], look=look), nothing, 0.9)[45:]
         assert np.ptp(np.nonzero(resting)[1]) == pytest.approx(8, abs=3)
     scale = SIZE[1] / (2 * np.tan(np.radians(15)) * 4.0)
     grown = np.subtract(widths[0.1], widths[0.0])
