@@ -14,6 +14,7 @@ from fontana.cli import exit_codes
 from fontana.cli.bench import bench
 from fontana.cli.files import export, mesh
 from fontana.cli.information import devices, explain, fluids, scenes, schema
+from fontana.cli.render import render
 from fontana.cli.run import resume, run
 from fontana.cli.validate import validate
 from fontana.cli.verify import verify
@@ -26,6 +27,7 @@ Examples:
   fontana run my_scene.json --set fluid.viscosity="300 cP" --frames 48
   fontana run my_scene.json --dry-run            what it will cost, before it starts
   fontana resume out/fountain_rock               go on after Ctrl-C or a crash
+  fontana render out/fountain_rock -o rock.mp4   water, without a window
   fontana explain fluid.viscosity                what a parameter means
 
 {exit_codes.HELP}"""
@@ -37,7 +39,9 @@ def cli() -> None:
     pass
 
 
-for command in (run, resume, mesh, export, devices, verify, validate, bench, scenes, schema, explain, fluids):
+for command in (
+    run, resume, render, mesh, export, devices, verify, validate, bench, scenes, schema, explain, fluids
+):  # fmt: skip
     cli.add_command(command)
 
 

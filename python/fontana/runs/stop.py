@@ -16,6 +16,7 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 class StopSignals:
     """Catches the signals while in the `with` block, and says `message`; only the main thread can.
 
+    message    what to say when the first one comes
     requested  the signal that came, or None
     """
 
