@@ -84,7 +84,7 @@ KERNEL void coarse_products(THREAD_ARG const StepConstants c, const uint cell_co
     if (cell >= cell_count) return;
     const uint begin = cell_start[cell], end = cell_start[cell + 1u];
     if (end - begin < COARSE_LEAST) return;
-    float sum[COARSE_TABLE];
+    GLOBAL float* RESTRICT sum = table + begin / COARSE_LEAST * COARSE_TABLE;
     for (uint k = 0u; k < COARSE_TABLE; ++k) sum[k] = 0.0f;
     for (uint i = begin; i < end; ++i) {
         const CoarseGradient a = coarse_gradient(c, i, volume_position, factor, weight, neighbor_count, list);
@@ -92,8 +92,6 @@ KERNEL void coarse_products(THREAD_ARG const StepConstants c, const uint cell_co
         for (uint p = 0u; p < 8u; ++p)
             for (uint q = p; q < 8u; ++q, ++k) sum[k] += a.x[p] * a.x[q] + a.y[p] * a.y[q] + a.z[p] * a.z[q];
     }
-    GLOBAL float* RESTRICT out = table + begin / COARSE_LEAST * COARSE_TABLE;
-    for (uint k = 0u; k < COARSE_TABLE; ++k) out[k] = sum[k];
 }
 
 FN uint coarse_table_index(uint p, uint q) {
