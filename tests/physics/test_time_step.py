@@ -59,8 +59,8 @@ def test_a_viscosity_beyond_the_fixed_step_is_refused_before_the_start(make_simu
 
 
 def test_a_spacing_too_fine_for_the_solve_is_refused_before_the_start(make_simulation):
-    simulation = make_simulation("cpu", fluid__method="dfsph", fluid__viscosity=0.0, fluid__particle_spacing=1.5e-4)
-    with pytest.raises(_core.BadInput, match="dfsph needs 2.78e\\+03 substeps a frame.*max_substeps allows 2000"):
+    simulation = make_simulation("cpu", fluid__method="dfsph", fluid__viscosity=0.0, fluid__particle_spacing=1.1e-4)
+    with pytest.raises(_core.BadInput, match="dfsph needs 2.53e\\+03 substeps a frame.*max_substeps allows 2000"):
         simulation.check()
 
 
