@@ -57,7 +57,7 @@ def command(particles: int, seconds: float, threads: int, repeats: int, peer_pyt
 
 
 def run_ours(per_metre: int, seconds: float, threads: int) -> dict:
-    """The same tank: where their walls let a layer rest, our planes stand half a spacing behind it."""
+    """The same tank: their walls' particles, 0.75 spacings outside of it, are where our planes have their first layer."""
     simulation = _core.Simulation()
     spacing = 1.0 / per_metre
     frames = 10
@@ -69,10 +69,11 @@ def run_ours(per_metre: int, seconds: float, threads: int) -> dict:
         simulation.set(name, value)
     simulation.add_emitter("block", centre=(0.5, 0.5, 0.5), size=(1.0, 1.0, 1.0))
     slippery = {"friction": 0.0, "elasticity": 0.0}
+    gap = 0.25 * spacing
     for kind in ("plane_x", "plane_y", "plane_z"):
-        simulation.add_collider(kind, **slippery)
-    simulation.add_collider("plane_x", centre=(2.0, 0.0, 0.0), flip=True, **slippery)
-    simulation.add_collider("plane_z", centre=(0.0, 0.0, 1.0), flip=True, **slippery)
+        simulation.add_collider(kind, centre=(-gap, -gap, -gap), **slippery)
+    simulation.add_collider("plane_x", centre=(2.0 + gap, 0.0, 0.0), flip=True, **slippery)
+    simulation.add_collider("plane_z", centre=(0.0, 0.0, 1.0 + gap), flip=True, **slippery)
     begin = time.perf_counter()
     reports = [simulation.step_frame() for _ in range(frames)]
     wall = time.perf_counter() - begin
