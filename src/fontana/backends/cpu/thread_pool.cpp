@@ -3,6 +3,24 @@
 #include <algorithm>
 
 namespace fontana {
+namespace {
+
+// A substep is dozens of short loops, and waking a thread that sleeps costs as much as some of them: for about as long
+// as that a thread looks for the next loop before it lies down.
+constexpr int k_looks = 4000;
+
+template <typename Condition>
+bool look_for(const Condition& condition) {
+    for (int k = 0; k < k_looks; ++k) {
+        if (condition()) return true;
+#if defined(__x86_64__)
+        __builtin_ia32_pause();
+#endif
+    }
+    return false;
+}
+
+}  // namespace
 
 ThreadPool::ThreadPool(int thread_count) {
     try {
@@ -42,8 +60,10 @@ void ThreadPool::run(std::size_t count, std::size_t grain, const std::function<v
     }
     start_.notify_all();
     take_pieces();
+    const auto is_done = [this] { return busy_ == 0; };
+    look_for(is_done);
     std::unique_lock<std::mutex> lock(mutex_);
-    done_.wait(lock, [this] { return busy_ == 0; });
+    done_.wait(lock, is_done);
     body_ = nullptr;
     if (error_) std::rethrow_exception(error_);
 }
@@ -65,18 +85,22 @@ void ThreadPool::take_pieces() {
 void ThreadPool::work() {
     std::size_t seen = 0;
     for (;;) {
-        {
-            std::unique_lock<std::mutex> lock(mutex_);
-            start_.wait(lock, [&] { return stopping_ || generation_ != seen; });
-            if (stopping_) return;
-            seen = generation_;
-        }
+        wait_for_work(seen);
+        if (stopping_) return;
+        seen = generation_;
         take_pieces();
-        {
-            std::lock_guard<std::mutex> lock(mutex_);
-            if (--busy_ == 0) done_.notify_one();
+        if (--busy_ == 0) {
+            std::lock_guard<std::mutex> lock(mutex_);  // whoever waits has either seen it or is asleep by now
+            done_.notify_one();
         }
     }
+}
+
+void ThreadPool::wait_for_work(std::size_t seen) {
+    const auto is_work = [&] { return stopping_ || generation_ != seen; };
+    if (look_for(is_work)) return;
+    std::unique_lock<std::mutex> lock(mutex_);
+    start_.wait(lock, is_work);
 }
 
 }  // namespace fontana

@@ -34,6 +34,7 @@ class ThreadPool {
     void work();
     void stop();
     void take_pieces();
+    void wait_for_work(std::size_t seen);
 
     std::vector<std::thread> workers_;
     std::mutex mutex_;
@@ -41,9 +42,9 @@ class ThreadPool {
     const std::function<void(std::size_t, std::size_t)>* body_ = nullptr;
     std::size_t count_ = 0, grain_ = 1;
     std::atomic<std::size_t> next_{0};
-    std::size_t generation_ = 0, busy_ = 0;
+    std::atomic<std::size_t> generation_{0}, busy_{0};
     std::exception_ptr error_;
-    bool stopping_ = false;
+    std::atomic<bool> stopping_{false};
 };
 
 }  // namespace fontana
