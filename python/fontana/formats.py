@@ -31,12 +31,12 @@ def write_frame(simulation: _core.Simulation, path: Path, format: str) -> tuple[
         data = read_bytes(path)
         return len(data), _core.hash(data)
     arrays = {name: simulation.read(name) for name in ATTRIBUTES}
-    arrays["radius"] = np.full(len(arrays["id"]), _particle_radius(simulation), dtype=np.float32)
+    arrays["radius"] = np.full(len(arrays["id"]), particle_radius(simulation), dtype=np.float32)
     data = _npz_bytes(arrays) if format == "npz" else _ply_bytes(arrays)
     return len(data), _core.publish_file(str(path), data)
 
 
-def _particle_radius(simulation: _core.Simulation) -> float:
+def particle_radius(simulation: _core.Simulation) -> float:
     """Half the distance of particles at rest, which is half the support radius; in the scene's unit, as positions."""
     return 0.25 * simulation.derived().support_radius / simulation.get("time.simulation_scale")
 

@@ -15,6 +15,7 @@ from fontana.cli.bench import bench
 from fontana.cli.information import devices, explain, fluids, scenes, schema
 from fontana.cli.run import resume, run
 from fontana.cli.verify import verify
+from fontana.cli.view import view
 
 _HELP = f"""Fontana simulates fluids for visual effects with particles (SPH), on the CPU and on the GPU.
 
@@ -35,7 +36,7 @@ def cli() -> None:
     pass
 
 
-for command in (run, resume, devices, verify, bench, scenes, schema, explain, fluids):
+for command in (run, resume, view, devices, verify, bench, scenes, schema, explain, fluids):
     cli.add_command(command)
 
 
