@@ -109,7 +109,11 @@ def _live_progress(model: ViewerModel, width: float) -> None:
     """The frame that is shown; the bar fills while a slow one is made."""
     snapshot, fraction = model.snapshot, model.source.fraction
     text = f"frame {snapshot.number}    {snapshot.time:.3f} s" if snapshot else "starting"
-    imgui.progress_bar(fraction or 0.0, ImVec2(width, 0), text)
+    imgui.progress_bar(fraction or 0.0, ImVec2(width, 0), "")
+    low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+    size = imgui.calc_text_size(text)
+    place = ImVec2(0.5 * (low.x + high.x - size.x), 0.5 * (low.y + high.y - size.y))
+    imgui.get_window_draw_list().add_text(place, imgui.get_color_u32(imgui.Col_.text.value), text)
 
 
 def _timeline(model: ViewerModel, width: float) -> None:

@@ -11,6 +11,7 @@ from fontana.units import readable
 from fontana.viewer.look import ACCENT
 
 _HELP_WIDTH = 64  # characters
+_WORKED_OUT = ("derived", "automatic")  # what the table of parameters says of some zeros: "0: derived"
 _MOST_FLOAT = 1e30  # a drag knows no infinity
 
 
@@ -50,7 +51,8 @@ def field(row: object, value: object, name: str) -> tuple[bool, object]:
     if row.type == "choice":
         return choice(name, row.choices, value)
     if row.type == "int":
-        return imgui.drag_int(f"##{name}", int(value), max(0.05, 0.01 * abs(value)), *_bounds(row, int))
+        speed, form = max(0.05, 0.01 * abs(value)), _meaning(row, value) or "%d"
+        return imgui.drag_int(f"##{name}", int(value), speed, *_bounds(row, int), form)
     if row.type == "vector":
         speed = _speed(max((abs(x) for x in value), default=0.0))
         changed, parts = imgui.drag_float3(f"##{name}", [*value], speed, *_bounds(row, float), "%.4g")
@@ -58,7 +60,8 @@ def field(row: object, value: object, name: str) -> tuple[bool, object]:
     if math.isinf(value):
         imgui.text_disabled("without end")
         return False, value
-    changed, number = imgui.drag_float(f"##{name}", value, _speed(value), *_bounds(row, float), _format(row.unit))
+    form = _meaning(row, value) or _format(row.unit)
+    changed, number = imgui.drag_float(f"##{name}", value, _speed(value), *_bounds(row, float), form)
     return changed, _plain(number)
 
 
@@ -80,6 +83,11 @@ def _bounds(row: object, kind: type) -> tuple[float, float]:
 
 def _format(unit: str) -> str:
     return f"%.4g {_escaped(readable(unit))}".strip()
+
+
+def _meaning(row: object, value: float) -> str:
+    """What a 0 stands for, where it is no quantity."""
+    return next((word for word in _WORKED_OUT if value == 0 and f"0: {word}" in row.doc), "")
 
 
 def _escaped(text: str) -> str:

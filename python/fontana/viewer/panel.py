@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 from fontana.gl.frame_data import COLOR_UNITS, STYLES
@@ -84,9 +86,10 @@ def _rates_table(model: ViewerModel) -> None:
     flags = imgui.TableFlags_.sizing_stretch_prop.value
     if not rates or not imgui.begin_table("rates", 4, flags):
         return
-    for title in ("scheme", "frames/s", "ms/frame", "particles"):
-        imgui.table_setup_column(title)
-    imgui.table_headers_row()
+    imgui.table_next_row()
+    for title in ("", "frames/s", "ms/frame", "particles"):
+        imgui.table_next_column()
+        _right_aligned(title, imgui.text_disabled)
     for scheme, rate in sorted(rates.items()):
         imgui.table_next_row()
         imgui.table_next_column()
@@ -96,8 +99,13 @@ def _rates_table(model: ViewerModel) -> None:
                 model.set(path, word)
         for text in (f"{rate.frames_per_second:.1f}", f"{1e3 * rate.solve_seconds:.1f}", f"{rate.particle_count:,}"):
             imgui.table_next_column()
-            imgui.text_unformatted(text)
+            _right_aligned(text, imgui.text_unformatted)
     imgui.end_table()
+
+
+def _right_aligned(text: str, draw: Callable[[str], None]) -> None:
+    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - imgui.calc_text_size(text).x)
+    draw(text)
 
 
 # ---- how it is drawn
