@@ -13,6 +13,7 @@ from fontana import _core
 from fontana.cli import exit_codes
 from fontana.cli.bench import bench
 from fontana.cli.information import devices, explain, fluids, scenes, schema
+from fontana.cli.render import render
 from fontana.cli.run import resume, run
 from fontana.cli.verify import verify
 from fontana.cli.view import view
@@ -25,6 +26,7 @@ Examples:
   fontana run my_scene.json --set fluid.viscosity="300 cP" --frames 48
   fontana run my_scene.json --dry-run            what it will cost, before it starts
   fontana resume out/fountain_rock               go on after Ctrl-C or a crash
+  fontana render out/fountain_rock -o rock.mp4   water, without a window
   fontana explain fluid.viscosity                what a parameter means
 
 {exit_codes.HELP}"""
@@ -36,7 +38,7 @@ def cli() -> None:
     pass
 
 
-for command in (run, resume, view, devices, verify, bench, scenes, schema, explain, fluids):
+for command in (run, resume, render, view, devices, verify, bench, scenes, schema, explain, fluids):
     cli.add_command(command)
 
 

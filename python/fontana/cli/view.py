@@ -8,18 +8,9 @@ import click
 
 from fontana import _core
 from fontana.overrides import parse_assignment
+from fontana.render.options import parse_size
 from fontana.scene import load_scene
 from fontana.tables import parameters
-
-
-class _Size(click.ParamType):
-    name = "WIDTHxHEIGHT"
-
-    def convert(self, value: object, parameter: object, context: object) -> tuple[int, int]:
-        width, _, height = str(value).partition("x")
-        if not (width.isdecimal() and height.isdecimal() and 1 <= int(width) <= 16384 and 1 <= int(height) <= 16384):
-            self.fail(f'"{value}": expected pixels such as 1280x720', parameter, context)
-        return int(width), int(height)
 
 
 @click.command()
@@ -32,14 +23,14 @@ class _Size(click.ParamType):
     "--set", "assignments", multiple=True, metavar="PATH=VALUE", help="Change a value of the scene; repeatable."
 )
 @click.option("--paused", is_flag=True, help="Begin without playing.")
-@click.option("--size", type=_Size(), default="1280x720", show_default=True, help="Of the window, in pixels.")
+@click.option("--size", "size_text", default="1280x720", show_default=True, metavar="WxH", help="Of the window.")
 def view(
     source: str,
     backend: str | None,
     neighbors: str | None,
     assignments: tuple[str, ...],
     paused: bool,
-    size: tuple[int, int],
+    size_text: str,
 ) -> None:
     """Look at SOURCE in a window: a scene is simulated live, the folder of a run is played.
 
@@ -59,6 +50,6 @@ def view(
     if Path(source).is_dir():
         if overrides:
             raise _core.BadInput(f'"{source}" is a run, which is played as it is; to change something view its scene')
-        open_viewer(Path(source), size, not paused)
+        open_viewer(Path(source), parse_size(size_text), not paused)
     else:
-        open_viewer(load_scene(source, overrides), size, not paused)
+        open_viewer(load_scene(source, overrides), parse_size(size_text), not paused)

@@ -13,7 +13,7 @@ _THICKNESS_SCALE = 2.4
 _FILTER_SCALE = 9.0
 _RANGE_SCALE = 5.0
 _BEHIND_SCALE = 1.0
-_ITERATIONS = 2
+_PASSES = ((1, 0), (0, 1), (1, 0), (0, 1), (0, 0))  # axes of the filter
 _UNITS = {"scene_colour": 7, "scene_depth": 8, "fluid_depth": 9, "fluid_thickness": 10}
 _NOTHING = 1e6  # m, the depth where there is no water
 
@@ -34,12 +34,12 @@ class FluidPass:
         targets.scene_depth.use(_UNITS["scene_depth"])
         self._draw_depth(targets, radius, uniforms)
         self._draw_thickness(targets, radius, uniforms)
-        self._smooth(targets, radius, pixels_per_metre)
-        return self._draw_water(targets, radius, stage_size, uniforms)
+        surface = self._smooth(targets, radius, pixels_per_metre)
+        return self._draw_water(targets, surface, radius, stage_size, uniforms)
 
     def _draw_depth(self, targets: Targets, radius: float, uniforms: dict) -> None:
         targets.fluid.use()
-        targets.fluid.clear(_NOTHING, depth=1.0)
+        targets.fluid.clear(_NOTHING, 0.0, depth=1.0)
         self.context.enable_only(self.context.DEPTH_TEST)
         self._draw_spheres("fluid_depth", _SURFACE_SCALE * radius, uniforms)
 
@@ -58,7 +58,7 @@ class FluidPass:
         set_uniforms(self.particles.programs[program], **own, **uniforms)
         self.particles.draw(program)
 
-    def _smooth(self, targets: Targets, radius: float, pixels_per_metre: float) -> None:
+    def _smooth(self, targets: Targets, radius: float, pixels_per_metre: float) -> object:
         self.context.enable_only(self.context.NOTHING)
         set_uniforms(
             self._filter,
@@ -68,16 +68,20 @@ class FluidPass:
             behind=_BEHIND_SCALE * radius,
             pixels_per_metre=pixels_per_metre,
         )
-        for _ in range(_ITERATIONS):
-            for source, axis in ((0, (1, 0)), (1, (0, 1))):
-                targets.fluid_depths[source].use(_UNITS["fluid_depth"])
-                targets.smoothing[1 - source].use()
-                set_uniforms(self._filter, axis=axis)
-                self._triangles[self._filter].render(self.context.TRIANGLES, vertices=3)
+        source = 0
+        for axis in _PASSES:
+            targets.fluid_depths[source].use(_UNITS["fluid_depth"])
+            source = 1 - source
+            targets.smoothing[source].use()
+            set_uniforms(self._filter, axis=axis)
+            self._triangles[self._filter].render(self.context.TRIANGLES, vertices=3)
+        return targets.fluid_depths[source]
 
-    def _draw_water(self, targets: Targets, radius: float, stage_size: float, uniforms: dict) -> object:
+    def _draw_water(
+        self, targets: Targets, surface: object, radius: float, stage_size: float, uniforms: dict
+    ) -> object:
         targets.scene_colour.use(_UNITS["scene_colour"])
-        targets.fluid_depths[0].use(_UNITS["fluid_depth"])
+        surface.use(_UNITS["fluid_depth"])
         targets.thickness.use(_UNITS["fluid_thickness"])
         set_uniforms(self._water, stage_size=stage_size, drop_size=2.0 * radius, **_UNITS, **uniforms)
         targets.water.use()

@@ -26,7 +26,8 @@ class FrameData:
     id            (N,)
     radius        m, half the particle spacing
     rest_density  kg/m^3
-    centres       (M, 3) m, where the colliders of the stage are now
+    centres       (M, 3) m, where the colliders of the stage are now; none: where the scene puts them
+    time          s
     """
 
     position: np.ndarray
@@ -37,6 +38,7 @@ class FrameData:
     radius: float
     rest_density: float
     centres: Sequence[np.ndarray] = ()
+    time: float = 0.0
 
     @property
     def particle_count(self) -> int:
@@ -78,7 +80,7 @@ class Look:
     color_range: tuple[float, float] | None = None
     color_map: str = "turbo"
     samples: int = 1
-    absorption: Sequence[float] = field(default=(5.2, 1.25, 0.85))  # by red, green, blue, over the size of the stage
+    absorption: Sequence[float] = field(default=(5.0, 1.15, 0.55))  # by red, green, blue, over the size of the stage
 
     def __post_init__(self) -> None:
         for name, value, known in (

@@ -8,7 +8,7 @@ from fontana.gl.particles import Particles
 from fontana.gl.shader_files import set_uniforms
 from fontana.gl.stage import Stage
 
-SUN = np.array([-0.62, 0.80, 0.08]) / np.linalg.norm([-0.62, 0.80, 0.08])
+SUN = np.array([-0.62, 0.74, 0.34]) / np.linalg.norm([-0.62, 0.74, 0.34])
 SUN_WIDTH = np.radians(1.6)  # of the disc; wider than the real one by three, for a softer edge
 MAP_SIZE = 1024  # texels
 _BEHIND = 3.0  # how far towards the light things still cast shadows, over the radius of the stage

@@ -7,7 +7,7 @@ drawn as one wall.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,6 +16,7 @@ _AXES = {"plane_x": 0, "plane_y": 1, "plane_z": 2}
 _SEGMENTS = 128  # around a basin or a rock
 _BEVEL_SHARE = 0.28  # of a wall's thickness
 _BEVEL_STEPS = 5
+_FLOOR_RISE = 2e-3  # over the outer radius of a basin
 _HORIZON = 60.0  # radius of the ground over the size of the stage
 
 
@@ -32,7 +33,6 @@ class Solid:
     normal: np.ndarray
     one_sided: bool = False
     casts_shadow: bool = True
-    label: str = field(default="")
 
 
 def make_solids(colliders: Sequence[dict], bounds: np.ndarray) -> list[Solid]:
@@ -49,7 +49,8 @@ def make_solids(colliders: Sequence[dict], bounds: np.ndarray) -> list[Solid]:
         else:
             partner = _other_half(index, colliders)
             merged.add(partner)
-            solids.append(_cylinder(index, collider, colliders[partner] if partner is not None else None, bounds))
+            half = colliders[partner] if partner is not None else None
+            solids.append(_cylinder(index, collider, half, bounds, _has_floor(colliders, bounds[0][1])))
     return solids
 
 
@@ -127,15 +128,16 @@ def _sphere(index: int, sphere: dict) -> Solid:
     return Solid(index, "rock", position, normal)
 
 
-def _cylinder(index: int, cylinder: dict, partner: dict | None, bounds: np.ndarray) -> Solid:
+def _has_floor(colliders: Sequence[dict], height: float) -> bool:
+    floors = [c for c in colliders if c["type"] == "plane_y" and c.get("enabled", True) and not c.get("flip")]
+    return any(abs(_centre(floor)[1] - height) < 1e-6 for floor in floors)
+
+
+def _cylinder(index: int, cylinder: dict, partner: dict | None, bounds: np.ndarray, has_floor: bool) -> Solid:
     """A wall with rounded rims, or, without a thickness, the face that the water meets."""
     inner, outer = _faces(cylinder)
     if partner is not None:
-        inner, outer = min(inner, _faces(partner)[0]), max(outer, _faces(partner)[1])
-        inner, outer = (
-            (cylinder if cylinder["type"] == "cylinder_inside" else partner)["radius"],
-            min(outer, (partner if cylinder["type"] == "cylinder_inside" else cylinder)["radius"]),
-        )
+        inner, outer = sorted((cylinder["radius"], partner["radius"]))
     centre = _centre(cylinder)
     bottom = bounds[0][1] - centre[1]
     top = min(cylinder.get("cutoff", np.inf), bounds[1][1]) - centre[1]
@@ -143,8 +145,12 @@ def _cylinder(index: int, cylinder: dict, partner: dict | None, bounds: np.ndarr
         outline = np.array([[inner, top], [inner, bottom]])
         position, normal = _revolve(outline, np.tile([-1.0, 0.0], (2, 1)))
         return Solid(index, "stone", position, normal, one_sided=True, casts_shadow=False)
-    position, normal = _revolve(*_wall_outline(inner, outer, bottom, top))
-    return Solid(index, "stone", position, normal)
+    outline, normals = _wall_outline(inner, outer, bottom, top)
+    if has_floor and inner > 0:  # a basin is of one stone with its floor, which lies a little above the ground
+        height = bottom + _FLOOR_RISE * outer
+        outline = np.concatenate([outline, [[inner, height], [0.0, height]]])
+        normals = np.concatenate([normals, [[0.0, 1.0], [0.0, 1.0]]])
+    return Solid(index, "stone", *_revolve(outline, normals))
 
 
 def _wall_outline(inner: float, outer: float, bottom: float, top: float) -> tuple[np.ndarray, np.ndarray]:

@@ -14,7 +14,7 @@ class Targets:
         self._made: list[object] = []
         self.scene_colour = self._texture(size, 4, "f2")
         self.scene_depth = self._texture(size, 1, "f4", linear=False)
-        self.fluid_depths = [self._texture(size, 1, "f4", linear=False) for _ in range(2)]
+        self.fluid_depths = [self._texture(size, 2, "f4", linear=False) for _ in range(2)]
         self.thickness = self._texture(self.small_size, 2, "f2")
         self.water_colour = self._texture(size, 4, "f2")
         self.average = self._texture(size, 4, "f4", linear=False)

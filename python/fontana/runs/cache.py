@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from fontana.gl.frame_data import FrameData
 from fontana.runs.manifest import Manifest, hash_text
 from fontana.scene import resolve
 
-_BOUNDS_FRAMES = 8  # how many frames, spread over the run, say where the fluid goes
+_SAMPLED_FRAMES = 8  # how many frames, spread over the run, say where the fluid goes and how fast
 
 
 class Cache:
@@ -56,11 +57,13 @@ class Cache:
         arrays = read_frame(path)
         radius = float(arrays["radius"][0]) if len(arrays["radius"]) else 1.0
         names = ("position", "velocity", "density", "pressure", "id")
+        time = record.get("time", frame * self.frame_duration)
         return FrameData(
             **{name: arrays[name] for name in names},
             radius=radius,
             rest_density=self._rest_density,
-            centres=self.centres(record.get("time", frame * self.frame_duration)),
+            centres=self.centres(time),
+            time=time,
         )
 
     def centres(self, time: float) -> list[np.ndarray]:
@@ -70,11 +73,18 @@ class Cache:
 
     def bounds(self) -> np.ndarray:
         """The box (2, 3) that holds what is worth seeing in all frames. Frames that cannot be read do not count."""
-        wanted = np.linspace(1, self.frame_count, min(self.frame_count, _BOUNDS_FRAMES)).round().astype(int)
-        positions = []
+        return stage_bounds(self.scene.colliders, [frame.position for frame in self._sampled()])
+
+    def value_range(self, color_by: str) -> tuple[float, float]:
+        """The lowest and the highest value of `FrameData.value_range` over the run."""
+        ranges = [frame.value_range(color_by) for frame in self._sampled()] or [(0.0, 1.0)]
+        return min(low for low, _ in ranges), max(high for _, high in ranges)
+
+    def _sampled(self) -> list[FrameData]:
+        """Frames spread over the run, those of them that can be read."""
+        wanted = np.linspace(1, self.frame_count, min(self.frame_count, _SAMPLED_FRAMES)).round().astype(int)
+        frames = []
         for frame in wanted:
-            try:
-                positions.append(self.load(int(frame)).position)
-            except _core.IoError:
-                continue
-        return stage_bounds(self.scene.colliders, positions)
+            with contextlib.suppress(_core.IoError):
+                frames.append(self.load(int(frame)))
+        return frames

@@ -249,7 +249,7 @@ class _Run:
 
     def _draw(self) -> None:
         if self.options.picture:
-            from fontana.picture import contact_sheet  # matplotlib is slow to import
+            from fontana.contact_sheet import contact_sheet  # matplotlib is slow to import
 
             contact_sheet(self.folder.path)
 

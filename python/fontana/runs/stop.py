@@ -9,17 +9,19 @@ import time
 
 PATIENCE = 5.0  # s for the frame to finish: a farm that sends SIGTERM gives about ten
 
-_MESSAGE = b"stopping after this frame and saving a checkpoint; once more stops at once\n"
+_AFTER_RUN = "stopping after this frame and saving a checkpoint; once more stops at once"
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class StopSignals:
     """Catches the signals while in the `with` block; only the main thread can.
 
+    message    what to say when the first one comes
     requested  the signal that came, or None
     """
 
-    def __init__(self) -> None:
+    def __init__(self, message: str = _AFTER_RUN) -> None:
+        self._message = f"{message}\n".encode()
         self.requested: int | None = None
         self._since = 0.0
         self._previous: dict[int, object] = {}
@@ -41,4 +43,4 @@ class StopSignals:
         self.requested, self._since = number, time.monotonic()
         for each in _SIGNALS:
             signal.signal(each, signal.SIG_DFL)
-        os.write(sys.stderr.fileno(), _MESSAGE)  # print could be the very thing that was interrupted
+        os.write(sys.stderr.fileno(), self._message)  # print could be the very thing that was interrupted

@@ -8,6 +8,7 @@ import imgui_bundle
 from imgui_bundle import ImVec2, ImVec4, imgui
 
 FONT_SIZE = 15.0  # pixels at a content scale of 1
+_COMFORTABLE_HEIGHT, _LARGEST = 860.0, 1.35  # pixels for letters of FONT_SIZE; and by how much they grow at most
 ACCENT = (0.26, 0.62, 0.86, 1.0)
 TEXT = (0.90, 0.92, 0.94, 1.0)
 DIM = (0.58, 0.63, 0.68, 1.0)
@@ -41,6 +42,11 @@ def apply(scale: float) -> None:
         style.set_color_(getattr(imgui.Col_, name).value, ImVec4(*color))
     style.scale_all_sizes(scale)
     style.font_scale_dpi = scale
+
+
+def fit(height: float) -> None:
+    """Lets the letters grow a little with the window, `height` pixels high."""
+    imgui.get_style().font_scale_main = min(_LARGEST, max(1.0, height / _COMFORTABLE_HEIGHT))
 
 
 def _colors() -> dict[str, tuple[float, float, float, float]]:

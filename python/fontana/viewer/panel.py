@@ -83,7 +83,7 @@ def _schemes_pane(model: ViewerModel) -> None:
 def _rates_table(model: ViewerModel) -> None:
     """Frames a second of each scheme that has run: a click goes back to it."""
     rates, snapshot = model.source.rates.by_scheme, model.snapshot
-    flags = imgui.TableFlags_.sizing_stretch_prop.value
+    flags = imgui.TableFlags_.sizing_stretch_same.value
     if not rates or not imgui.begin_table("rates", 4, flags):
         return
     imgui.table_next_row()

@@ -82,6 +82,7 @@ class ViewerWindow:
         imgui.backends.glfw_new_frame()
         imgui.new_frame()
         model, display = self.model, imgui.get_io().display_size
+        look.fit(display.y)
         hands.handle_keys(model)
         layout = Layout(display.x, display.y, imgui.get_font_size(), model.shows_panel)
         self._draw_picture(layout.view)

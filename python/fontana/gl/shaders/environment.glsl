@@ -2,10 +2,11 @@
 uniform vec3 sun_direction;    // towards the sun, unit
 uniform sampler3D noise_cube;  // white noise, repeated
 
-const vec3 SUN_COLOUR = vec3(2.35, 2.12, 1.78);
-const vec3 SKY_ZENITH = vec3(0.11, 0.26, 0.58);
+const vec3 SUN_COLOUR = vec3(2.85, 2.60, 2.22);
+const vec3 SKY_ZENITH = vec3(0.085, 0.23, 0.56);
 const vec3 SKY_HORIZON = vec3(0.62, 0.74, 0.86);
-const vec3 GROUND_COLOUR = vec3(0.33, 0.30, 0.27);
+const vec3 FAR_GROUND = vec3(0.235, 0.275, 0.225);
+const vec3 GROUND_COLOUR = vec3(0.21, 0.19, 0.165);
 
 float noise(vec3 p) {
     vec3 cell = floor(p);
@@ -28,14 +29,25 @@ vec3 sky(vec3 direction) {
     return mix(colour, cloud, 0.75 * cover * smoothstep(0.02, 0.25, height));
 }
 
+// Trees far away, as high above the horizon as their noise.
+vec3 treeline(vec3 direction, vec3 behind) {
+    vec2 around = normalize(direction.xz);
+    float height = 0.018 + 0.045 * fractal_noise(vec3(5.0 * around, 1.0)) + 0.010 * fractal_noise(vec3(60.0 * around, 3.0));
+    float hills = 0.03 + 0.07 * fractal_noise(vec3(1.7 * around, 8.0));
+    vec3 colour = mix(behind, vec3(0.36, 0.46, 0.56), 0.75 * smoothstep(0.004, -0.004, direction.y - hills));
+    vec3 leaves = vec3(0.10, 0.145, 0.085) * (0.6 + 0.9 * fractal_noise(vec3(90.0 * around, 90.0 * direction.y)));
+    return mix(colour, mix(leaves, SKY_HORIZON, 0.22), smoothstep(0.002, -0.002, direction.y - height));
+}
+
 // What a ray that leaves the scene meets.
 vec3 surroundings(vec3 direction) {
-    vec3 below = mix(SKY_HORIZON * 0.9, GROUND_COLOUR, smoothstep(0.0, 0.12, -direction.y));
-    return mix(below, sky(direction), smoothstep(-0.01, 0.01, direction.y));
+    vec3 below = mix(FAR_GROUND, GROUND_COLOUR, smoothstep(0.0, 0.12, -direction.y));
+    vec3 above = direction.y < 0.16 ? treeline(direction, sky(direction)) : sky(direction);
+    return mix(below, above, smoothstep(-0.002, 0.002, direction.y));
 }
 
 // The light of sky and ground on a surface that sees all of both.
 vec3 ambient_light(vec3 normal) {
-    vec3 above = 0.5 * (SKY_ZENITH + SKY_HORIZON) * 1.15;
-    return mix(GROUND_COLOUR * 0.55, above, 0.5 + 0.5 * normal.y);
+    vec3 above = 0.5 * (SKY_ZENITH + SKY_HORIZON) * 0.72;
+    return mix(GROUND_COLOUR * 0.35, above, 0.5 + 0.5 * normal.y);
 }

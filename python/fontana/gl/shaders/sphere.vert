@@ -11,10 +11,12 @@ out vec3 view_centre;
 out vec3 on_square;
 out float shown_radius;
 out float value;
+out float body;   // 1 in the body of the water, 0 for a drop alone
 out float spray;  // 0 in the body of the water, 1 for a fast drop alone
 
 void main() {
-    shown_radius = radius * mix(1.0, mix(0.42, 1.0, smoothstep(0.34, 0.72, in_state.x)), size_by_crowd);
+    body = smoothstep(0.34, 0.74, in_state.x);
+    shown_radius = radius * mix(1.0, mix(0.4, 1.0, body), size_by_crowd);
     view_centre = (view * vec4(in_position, 1.0)).xyz;
     value = (in_value - value_range.x) / (value_range.y - value_range.x);
     spray = (1.0 - smoothstep(0.45, 0.80, in_state.x)) * smoothstep(0.25, 1.5, in_state.y);

@@ -11,7 +11,7 @@ layout(location = 0) out vec4 colour;
 
 const float NOTHING = 1e5;
 const float INDEX = 1.333;
-const vec3 SCATTER = vec3(0.012, 0.075, 0.085);
+const vec3 SCATTER = vec3(0.010, 0.062, 0.088);
 const vec3 FOAM = vec3(0.80, 0.84, 0.86);
 
 vec2 to_uv(vec3 place) {

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fontana.raycast import Hits, cast
+from fontana.contact_sheet.raycast import Hits, cast
 
 LIGHT = np.array([0.45, 1.0, 0.35]) / np.linalg.norm([0.45, 1.0, 0.35])
 BACKGROUND = np.array([[0.055, 0.065, 0.085], [0.018, 0.022, 0.03]])  # bottom, top

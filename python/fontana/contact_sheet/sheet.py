@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from fontana import _core
+from fontana.bounds import stage_bounds
+from fontana.contact_sheet.spheres import SPEED_COLOURS, SPEED_STOPS, Stage, View
 from fontana.formats import read_frame
-from fontana.render import SPEED_COLOURS, SPEED_STOPS, Stage, View
+from fontana.gl.camera import Camera
 from fontana.runs.manifest import Manifest
 from fontana.scene import Scene, resolve
 
@@ -51,7 +53,7 @@ def _draw_frames(scene: Scene, records: list[dict], frames: list[dict]) -> tuple
     speeds = [np.linalg.norm(frame["velocity"], axis=1) for frame in frames]
     everything = np.concatenate(speeds)
     fast = float(np.quantile(everything, 0.996)) if len(everything) else 1.0
-    bounds = _bounds(scene, frames)
+    bounds = stage_bounds(scene.colliders, [frame["position"] for frame in frames])
     view = _view(scene, bounds)
     radii = np.concatenate([frame["radius"] for frame in frames])
     radius = SPHERE_SCALE * float(radii[0]) if len(radii) else 0.0
@@ -73,45 +75,10 @@ def _shrink(image: np.ndarray) -> np.ndarray:
     return image.reshape(height, SUPERSAMPLING, width, SUPERSAMPLING, 3).mean(axis=(1, 3))
 
 
-def _bounds(scene: Scene, frames: list[dict]) -> np.ndarray:
-    """The box of what is worth seeing: most of the fluid at all times, and the round colliders."""
-    points = np.concatenate([frame["position"][:: max(1, len(frame["position"]) // 5000)] for frame in frames])
-    corners = [np.quantile(points, [0.005, 0.995], axis=0)] if len(points) else []
-    for collider in scene.colliders:
-        if not collider["type"].startswith("cylinder"):
-            continue
-        centre = np.array(collider.get("centre", [0.0, 0.0, 0.0]))
-        radius = collider["radius"] + collider.get("thickness", 0.0)
-        low, high = centre - radius, centre + radius
-        low[1], high[1] = centre[1], collider.get("cutoff", centre[1])
-        corners.append(np.array([low, high]))
-    corners = np.concatenate(corners) if corners else np.array([[-1.0, 0.0, -1.0], [1.0, 1.0, 1.0]])
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    _include_planes(scene, low, high)
-    margin = 0.12 * (high - low).max()
-    return np.array([low - [margin, 0.0, margin], high + margin])
-
-
-def _include_planes(scene: Scene, low: np.ndarray, high: np.ndarray) -> None:
-    """Widens the box to walls and floors that are not far from it."""
-    for axis, kind in enumerate(("plane_x", "plane_y", "plane_z")):
-        reach = high[axis] - low[axis]
-        places = [c.get("centre", [0.0, 0.0, 0.0])[axis] for c in scene.colliders if c["type"] == kind]
-        near = [place for place in places if low[axis] - reach < place < high[axis] + reach]
-        low[axis], high[axis] = min([low[axis], *near]), max([high[axis], *near])
-
-
 def _view(scene: Scene, bounds: np.ndarray) -> View:
-    """The scene's camera, or one that looks down a little at the whole."""
-    middle, size = bounds.mean(axis=0), np.ptp(bounds, axis=0)
-    opening = scene.view.get("field_of_view", 32.0)
-    target = np.array(scene.view.get("target", middle - [0.0, 0.12 * size[1], 0.0]))
-    reach = 0.5 * float(np.linalg.norm(size)) / np.tan(np.radians(opening) / 2)
-    aim = np.array([0.42, 0.48, 1.0])
-    eye = np.array(scene.view.get("eye", target + aim / np.linalg.norm(aim) * reach * 0.95))
-    if np.allclose(eye, target):
-        raise _core.BadInput("view: eye and target are the same place")
-    return View(eye, target, opening, (PANEL[0] * SUPERSAMPLING, PANEL[1] * SUPERSAMPLING))
+    camera = Camera.of_scene(scene.view, bounds)
+    size = (PANEL[0] * SUPERSAMPLING, PANEL[1] * SUPERSAMPLING)
+    return View(camera.eye, camera.target, camera.field_of_view, size)
 
 
 def _sheet(scene: Scene, manifest: Manifest, records: list[dict], images: list[np.ndarray], fast: float) -> bytes:

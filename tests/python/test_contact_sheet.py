@@ -9,9 +9,9 @@ import pytest
 from matplotlib import image as images
 
 import fontana as package
-from fontana.picture import contact_sheet
-from fontana.raycast import cast
-from fontana.render import Stage, View, splat
+from fontana.contact_sheet import contact_sheet
+from fontana.contact_sheet.raycast import cast
+from fontana.contact_sheet.spheres import Stage, View, splat
 
 BOUNDS = np.array([[-2.0, 0.0, -2.0], [2.0, 2.0, 2.0]])
 

@@ -1,0 +1,105 @@
+"""Where pictures go: a file for each, or a film. Each appears under its name only when it is complete."""
+
+from __future__ import annotations
+
+import io
+import re
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from fontana import _core
+from fontana.render.film import FILM_SUFFIXES, Film
+from fontana.render.options import check_suffix
+
+_HASHES = re.compile(r"#+")
+_STAMP = "fontana"  # the text chunk of a PNG that says from what it was made
+
+
+class Output(Protocol):
+    """Takes pictures in order of their frames."""
+
+    def has(self, frame: int, stamp: str) -> bool:
+        """Whether the picture of `frame` is there, made from what `stamp` says. Raises BadInput if it is not ours."""
+
+    def write(self, frame: int, picture: np.ndarray, stamp: str) -> None:
+        """Takes a picture, (height, width, 3) bytes. Raises IoError."""
+
+    def finish(self) -> list[Path]:
+        """Completes what was written so far and returns its files. Raises IoError."""
+
+    def abandon(self) -> None:
+        """Removes what is not complete; nothing happens after `finish`."""
+
+
+def open_output(path: Path, size: tuple[int, int], fps: float, frame_count: int, restart: bool) -> Output:
+    """The output for the name of a file. Raises BadInput for a suffix or a pattern that cannot be, IoError."""
+    check_suffix(path, (".png", *FILM_SUFFIXES))
+    folder = path.parent
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise _core.IoError(f'cannot write to "{folder}": {error.strerror}') from error
+    if path.suffix.lower() != ".png":
+        return Film(path, size, fps)
+    if frame_count > 1 and not _HASHES.search(path.name):
+        numbered = path.with_name(f"{path.stem}.####.png")
+        raise _core.BadInput(f'-o "{path}": {frame_count} frames need a number in the name, as "{numbered}"')
+    return Pictures(path, restart)
+
+
+class Pictures:
+    """A PNG for each frame; a run of # in the name becomes the frame's number."""
+
+    def __init__(self, pattern: Path, restart: bool):
+        self.pattern, self.restart = pattern, restart
+        self._files: list[Path] = []
+
+    def path(self, frame: int) -> Path:
+        return self.pattern.with_name(_HASHES.sub(lambda run: f"{frame:0{len(run[0])}d}", self.pattern.name))
+
+    def has(self, frame: int, stamp: str) -> bool:
+        path = self.path(frame)
+        if self.restart or not path.exists():
+            return False
+        found = _read_stamp(path)
+        if found is None:
+            raise _core.BadInput(f'"{path}" was not made by fontana render; use another -o, or --restart to replace it')
+        if found == stamp:
+            self._files.append(path)
+        return found == stamp
+
+    def write(self, frame: int, picture: np.ndarray, stamp: str) -> None:
+        path = self.path(frame)
+        _core.publish_file(str(path), _png(picture, stamp))
+        self._files.append(path)
+
+    def finish(self) -> list[Path]:
+        return sorted(self._files)
+
+    def abandon(self) -> None:
+        pass
+
+
+def _png(picture: np.ndarray, stamp: str) -> bytes:
+    from PIL import Image, PngImagePlugin
+
+    text = PngImagePlugin.PngInfo()
+    text.add_text(_STAMP, stamp)
+    buffer = io.BytesIO()
+    Image.fromarray(picture).save(buffer, format="png", pnginfo=text)
+    return buffer.getvalue()
+
+
+def _read_stamp(path: Path) -> str | None:
+    """What a picture was made from; None if it is not one of ours, "" if it is damaged."""
+    from PIL import Image
+
+    try:
+        with Image.open(path) as image:
+            stamp = image.info.get(_STAMP)
+            image.load()
+    except (OSError, SyntaxError, ValueError):  # Pillow raises SyntaxError for a broken PNG
+        return "" if path.stat().st_size == 0 else None
+    return stamp
