@@ -49,7 +49,7 @@ def view(
 
     if Path(source).is_dir():
         if overrides:
-            raise _core.BadInput(f'"{source}" is a run, which is played as it is; to change something view its scene')
+            raise _core.BadInput(f'"{source}" is a folder: a run is played as it is; to change it view its scene')
         open_viewer(Path(source), parse_size(size_text), not paused)
     else:
         open_viewer(load_scene(source, overrides), parse_size(size_text), not paused)

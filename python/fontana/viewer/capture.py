@@ -36,7 +36,8 @@ class Capture:
             self.model.is_screenshot_due = False
             self._try(lambda: self._write_screenshot(self.picture.image(self.model, size, _SCREENSHOT_SAMPLES)))
         if self.model.is_recording:
-            self._try(lambda: self._record(size))
+            if not self._try(lambda: self._record(size)):
+                self._abandon()
         elif self._film:
             self._try(self._finish)
 
@@ -71,12 +72,20 @@ class Capture:
         for path in film.finish():
             self.model.messages.say(f"movie: {path}")
 
-    def _try(self, write: Callable[[], None]) -> None:
+    def _abandon(self) -> None:
+        """Gives up a movie that cannot be written on."""
+        film, self._film, self._filmed = self._film, None, None
+        self.model.is_recording = False
+        if film:
+            film.abandon()
+
+    def _try(self, write: Callable[[], None]) -> bool:
         try:
             write()
         except (_core.FontanaError, OSError, MemoryError) as error:
             self.model.messages.say(str(error) or "out of memory", is_error=True)
-            self.model.is_recording, self._film, self._filmed = False, None, None
+            return False
+        return True
 
     def _free_path(self, suffix: str) -> Path:
         name = self.model.source.scene.name

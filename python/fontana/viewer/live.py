@@ -167,7 +167,8 @@ class LiveSource:
     def _seconds_to_next_frame(self) -> float | None:
         if self._failure or not self._orders.wants_frames:
             return None
-        return 0.0 if self._orders.steps else self._due - time.monotonic()
+        is_due = self._orders.steps or self._is_within_frame
+        return 0.0 if is_due else self._due - time.monotonic()
 
     @property
     def _is_within_frame(self) -> bool:
@@ -207,12 +208,12 @@ class LiveSource:
         self._set_push(self._orders.push)
         if not self._is_within_frame:
             self._fraction = 0.0
+            self._due = time.monotonic() + 1.0 / self.frames_per_second
         report = self._simulation.step_frame(self._on_substep)
         self._fraction = None
         scheme = f"{self._simulation.device().backend} {self._simulation.get('solver.neighbors')}"
         self._show(frame_record(report), scheme, {"simulate": report.seconds})
         self.rates.note(scheme, time.monotonic(), report.seconds, report.particle_count)
-        self._due = max(self._due + 1.0 / self.frames_per_second, time.monotonic())
         with self._condition:
             self._orders.steps = max(0, self._orders.steps - 1)
             if not self._orders.is_playing:
