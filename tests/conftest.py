@@ -68,3 +68,16 @@ def random_block():
         return position.astype(np.float32), velocity.astype(np.float32)
 
     return make
+
+
+@pytest.fixture(scope="session")
+def opengl():
+    """A moderngl context without a window; skipped where there is none, which in CI is a failure."""
+    from fontana.gl.context import create_headless_context
+
+    try:
+        return create_headless_context()
+    except _core.DeviceUnavailable as error:
+        if os.environ.get("CI") == "true":
+            pytest.fail(str(error))
+        pytest.skip(str(error))

@@ -32,6 +32,13 @@ _LOOK = Look()
     show_default=True,
     help="Pictures averaged into one: smooth edges, soft shadows.",
 )
+@click.option(
+    "--shutter",
+    type=click.FloatRange(0.0, 1.0),
+    default=0.25,
+    show_default=True,
+    help="Share of a frame that water is exposed for; points are sharp.",
+)
 @click.option("--camera", "camera_text", default="", metavar="TEXT", help="Where it is. [default: the scene's view]")
 @click.option("--color-by", type=click.Choice(tuple(COLOR_UNITS)), default=_LOOK.color_by, show_default=True)
 @click.option("--color-range", "range_text", metavar="LOW,HIGH", help="Values at the ends. [default: those of the run]")
@@ -48,6 +55,7 @@ def render(
     frame_text: str | None,
     size_text: str,
     samples: int,
+    shutter: float,
     camera_text: str,
     color_by: str,
     range_text: str | None,
@@ -76,12 +84,13 @@ def render(
     """
     cache = Cache(folder)
     camera, turn = parse_camera(camera_text, Camera.of_scene(cache.scene.view, cache.bounds()))
+    exposure = shutter * cache.frame_duration if style == "fluid" else 0.0
     options = RenderOptions(
         frames=parse_frames(frame_text, cache.frame_count),
         size=parse_size(size_text),
         camera=camera,
         turn=turn,
-        look=Look(style, color_by, parse_color_range(range_text), color_map, samples),
+        look=Look(style, color_by, parse_color_range(range_text), color_map, samples, exposure),
         legend=legend,
         fps=fps or cache.fps,
         restart=restart,

@@ -27,6 +27,7 @@ class FrameData:
     radius        m, half the particle spacing
     rest_density  kg/m^3
     centres       (M, 3) m, where the colliders of the stage are now; none: where the scene puts them
+    centre_velocities  (M, 3) m/s; none: they stand still
     time          s
     """
 
@@ -38,7 +39,14 @@ class FrameData:
     radius: float
     rest_density: float
     centres: Sequence[np.ndarray] = ()
+    centre_velocities: Sequence[np.ndarray] = ()
     time: float = 0.0
+
+    def centres_at(self, seconds: float) -> list[np.ndarray]:
+        """Where the colliders are so long after the frame."""
+        if not len(self.centre_velocities):
+            return list(self.centres)
+        return [c + seconds * v for c, v in zip(self.centres, self.centre_velocities, strict=True)]
 
     @property
     def particle_count(self) -> int:
@@ -72,7 +80,8 @@ class Look:
     color_by     what colours the points: "speed", "density", "pressure" or "id"
     color_range  the values at the two ends of the colour map; None: those of the frame
     color_map    "viridis" or "turbo"
-    samples      pictures averaged into one, each with its own place in the pixel, of the sun and of the sky
+    samples      pictures averaged into one, each with its own time, place in the pixel, of the sun and of the sky
+    shutter      s that the picture is exposed, around the time of the frame; one sample alone is sharp
     """
 
     style: str = "fluid"
@@ -80,6 +89,7 @@ class Look:
     color_range: tuple[float, float] | None = None
     color_map: str = "turbo"
     samples: int = 1
+    shutter: float = 0.0
     absorption: Sequence[float] = field(default=(5.0, 1.15, 0.55))  # by red, green, blue, over the size of the stage
 
     def __post_init__(self) -> None:
@@ -90,6 +100,8 @@ class Look:
         ):
             if value not in known:
                 raise _core.BadInput(f'{name}: "{value}" is not one of {", ".join(known)}{_near(value, known)}')
+        if not 0.0 <= self.shutter < np.inf:
+            raise _core.BadInput(f"shutter: expected 0 s or more, got {self.shutter:g}")
         if self.samples < 1:
             raise _core.BadInput(f"samples: expected 1 or more, got {self.samples}")
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
 from fontana.gl.particles import Particles
@@ -13,6 +16,19 @@ SUN_WIDTH = np.radians(1.6)  # of the disc; wider than the real one by three, fo
 MAP_SIZE = 1024  # texels
 _BEHIND = 3.0  # how far towards the light things still cast shadows, over the radius of the stage
 _SPHERE_SCALE = 1.6  # of the discs that fill the map of the water, over the particle radius
+
+
+@dataclass(frozen=True)
+class Moment:
+    """The scene at one time of the exposure, `shutter_time` seconds from that of the frame.
+
+    centres are where the colliders are, radius (m) is that of a particle.
+    """
+
+    centres: Sequence[np.ndarray]
+    radius: float
+    shutter_time: float
+    as_fluid: bool
 
 
 class LightMap:
@@ -29,30 +45,22 @@ class LightMap:
         self._solid_target = context.framebuffer(depth_attachment=self.solid)
         self._water_target = context.framebuffer([self.water])
 
-    def draw(
-        self,
-        direction: np.ndarray,
-        spread: float,
-        stage: Stage,
-        particles: Particles,
-        centres,
-        radius: float,
-        as_fluid: bool,
-    ) -> dict:
+    def draw(self, direction: np.ndarray, spread: float, stage: Stage, particles: Particles, moment: Moment) -> dict:
         """Draws what stands in the way of light from `direction`, and returns the uniforms that ask for it."""
         matrix, right, up, texel, depth = self._place(direction, stage)
         common = {"light_matrix": matrix, "light_right": right, "light_up": up, "depth_range": depth}
+        common["shutter_time"] = moment.shutter_time
         self._solid_target.use()
         self._solid_target.clear(depth=1.0)
         self.context.enable_only(self.context.DEPTH_TEST)
-        stage.draw_shadows(centres, matrix)
-        if not as_fluid:
-            set_uniforms(particles.programs["light_points"], radius=radius, **common)
+        stage.draw_shadows(moment.centres, matrix)
+        if not moment.as_fluid:
+            set_uniforms(particles.programs["light_points"], radius=moment.radius, **common)
             particles.draw("light_points")
         self._water_target.use()
         self._water_target.clear(0.0, 0.0, 0.0, 1.0)
-        if as_fluid:
-            self._draw_water(particles, radius, common)
+        if moment.as_fluid:
+            self._draw_water(particles, moment.radius, common)
         return self._uniforms(matrix, texel, depth, spread)
 
     def _draw_water(self, particles: Particles, radius: float, common: dict) -> None:

@@ -12,7 +12,9 @@ _GROWTH = 1.5  # of the buffers, so that an emitter does not make new ones each 
 
 
 class Particles:
-    """Buffers for position, state (density over rest density, speed) and the value that colours, and programs on them.
+    """Buffers for position, velocity, state and a value to colour by, and programs that draw them.
+
+    State is density over rest density, and speed.
 
     Programs are named by their files; each has the inputs it asks for.
     """
@@ -36,6 +38,7 @@ class Particles:
             return
         state = np.stack([frame.density / frame.rest_density, frame.values("speed")], axis=1)
         self._position.write(np.ascontiguousarray(frame.position, dtype="f4"))
+        self._velocity.write(np.ascontiguousarray(frame.velocity, dtype="f4"))
         self._state.write(np.ascontiguousarray(state, dtype="f4"))
 
     def show(self, color_by: str) -> None:
@@ -52,12 +55,14 @@ class Particles:
         for thing in (*self._arrays.values(), *(self._buffers() if self._capacity else ())):
             thing.release()
         self._position = self.context.buffer(reserve=12 * capacity)
+        self._velocity = self.context.buffer(reserve=12 * capacity)
         self._state = self.context.buffer(reserve=8 * capacity)
         self._value = self.context.buffer(reserve=4 * capacity)
         self._capacity = capacity
         inputs = {
             "in_corner": (self._corners, "2f"),
             "in_position": (self._position, "3f/i"),
+            "in_velocity": (self._velocity, "3f/i"),
             "in_state": (self._state, "2f/i"),
             "in_value": (self._value, "1f/i"),
         }
@@ -69,4 +74,4 @@ class Particles:
         }
 
     def _buffers(self) -> tuple[object, ...]:
-        return self._position, self._state, self._value
+        return self._position, self._velocity, self._state, self._value

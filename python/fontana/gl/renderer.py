@@ -38,6 +38,8 @@ class Renderer:
 
     set_stage once for a scene, set_frame once for a frame, draw as often as the picture changes. What stands in the
     context's state (flags, blending, bound framebuffer and textures) is not restored.
+
+    targets  the textures of the last picture, depth and thickness of the water among them
     """
 
     def __init__(self, context: object):
@@ -56,15 +58,15 @@ class Renderer:
         self._triangles = {name: context.vertex_array(program, []) for name, program in self._screen.items()}
         self._noise = self._make_noise()
         self._color_maps: dict[str, object] = {}
-        self._stage: Stage | None = None
+        self._stage = Stage(context)
+        self._has_stage = False
         self._frame: FrameData | None = None
-        self._targets: Targets | None = None
+        self.targets: Targets | None = None
 
     def set_stage(self, colliders: Sequence[dict], bounds: np.ndarray) -> None:
         """The colliders of the scene and the box (2, 3) in metres that holds what is worth seeing."""
-        if self._stage:
-            self._stage.release()
-        self._stage = Stage(self.context, colliders, bounds)
+        self._stage.load(colliders, bounds)
+        self._has_stage = True
 
     def set_frame(self, frame: FrameData) -> None:
         """Uploads the particles of a frame."""
@@ -73,7 +75,7 @@ class Renderer:
 
     def draw(self, camera: Camera, size: tuple[int, int], look: Look, target: object) -> None:
         """Draws into `target`, a framebuffer of `size` pixels; a size without pixels draws nothing."""
-        if min(size) < 1 or self._stage is None or self._frame is None:
+        if min(size) < 1 or not self._has_stage or self._frame is None:
             return
         targets = self._targets_of(size)
         targets.averaged.clear(0.0, 0.0, 0.0, 0.0)
@@ -96,23 +98,28 @@ class Renderer:
 
     def _draw_sample(self, camera: Camera, targets: Targets, look: Look, sample: int) -> object:
         """Draws one sample and returns the texture that has it."""
-        as_fluid = look.style == "fluid"
-        uniforms = self._camera_uniforms(camera, targets.size, sample) | self._light_uniforms(look, sample)
-        self._draw_scene(targets, uniforms)
-        if not as_fluid:
+        moment = self._moment(look, sample)
+        uniforms = self._camera_uniforms(camera, targets.size, sample) | self._light_uniforms(look, moment, sample)
+        self._draw_scene(targets, moment, uniforms)
+        if not moment.as_fluid:
             self._draw_points(targets, look, uniforms)
             return targets.scene_colour
         pixels_per_metre = targets.size[1] / (2.0 * np.tan(np.radians(camera.field_of_view) / 2))
         return self._fluid.draw(targets, self._frame.radius, self._stage.size, pixels_per_metre, uniforms)
 
-    def _draw_scene(self, targets: Targets, uniforms: dict) -> None:
+    def _moment(self, look: Look, sample: int) -> lights.Moment:
+        shutter_time = look.shutter * ((sample + 0.5) / look.samples - 0.5)
+        centres = self._frame.centres_at(shutter_time)
+        return lights.Moment(centres, self._frame.radius, shutter_time, as_fluid=look.style == "fluid")
+
+    def _draw_scene(self, targets: Targets, moment: lights.Moment, uniforms: dict) -> None:
         self.context.enable_only(self.context.NOTHING)
         targets.scene.clear(depth=1.0)
         targets.backdrop.use()
         set_uniforms(self._screen["backdrop"], **uniforms)
         self._triangles["backdrop"].render(self.context.TRIANGLES, vertices=3)
         targets.scene.use()
-        self._stage.draw(self._frame.centres, uniforms)
+        self._stage.draw(moment.centres, uniforms)
 
     def _draw_points(self, targets: Targets, look: Look, uniforms: dict) -> None:
         self.particles.show(look.color_by)
@@ -135,18 +142,18 @@ class Renderer:
             "lens": (half * size[0] / size[1], half, -2.0 * shift[0] / size[0], -2.0 * shift[1] / size[1]),
         }
 
-    def _light_uniforms(self, look: Look, sample: int) -> dict:
+    def _light_uniforms(self, look: Look, moment: lights.Moment, sample: int) -> dict:
         """Draws the light maps of a sample. One sample alone has the sky straight above, with wide soft edges."""
-        as_fluid, frame = look.style == "fluid", self._frame
         place = (0.5 + _GOLDEN * sample) % 1.0
         sun = lights.sun_direction(tuple(place)) if look.samples > 1 else lights.SUN
         sky = lights.sky_direction(tuple(place[::-1])) if look.samples > 1 else np.array([0.0, 1.0, 0.0])
-        scene = (self._stage, self.particles, frame.centres, frame.radius, as_fluid)
+        scene = (self._stage, self.particles, moment)
         self._noise.use(_NOISE_UNIT)
         return {
             "sun_direction": sun,
             "noise_cube": _NOISE_UNIT,
-            "ripple_time": _RIPPLE_SPEED * frame.time,
+            "ripple_time": _RIPPLE_SPEED * self._frame.time,
+            "shutter_time": moment.shutter_time,
             "light_absorption": tuple(share / self._stage.size for share in look.absorption),
             **self._sun.draw(sun, _SUN_SPREAD, *scene),
             **self._sky.draw(sky, 3.0 if look.samples > 1 else _SKY_SPREAD, *scene),
@@ -165,11 +172,11 @@ class Renderer:
         self._triangles[name].render(self.context.TRIANGLES, vertices=3)
 
     def _targets_of(self, size: tuple[int, int]) -> Targets:
-        if self._targets is None or self._targets.size != size:
-            if self._targets:
-                self._targets.release()
-            self._targets = Targets(self.context, size)
-        return self._targets
+        if self.targets is None or self.targets.size != size:
+            if self.targets:
+                self.targets.release()
+            self.targets = Targets(self.context, size)
+        return self.targets
 
     def _color_map(self, name: str) -> object:
         if name not in self._color_maps:

@@ -17,6 +17,7 @@ _SEGMENTS = 128  # around a basin or a rock
 _BEVEL_SHARE = 0.28  # of a wall's thickness
 _BEVEL_STEPS = 5
 _FLOOR_RISE = 2e-3  # over the outer radius of a basin
+_ROCK_WAVES, _ROCK_DEPTH = 12, 0.06  # the stone stays within the sphere that the water meets
 _HORIZON = 60.0  # radius of the ground over the size of the stage
 
 
@@ -125,7 +126,14 @@ def _sphere(index: int, sphere: dict) -> Solid:
     position, normal = _revolve(sphere["radius"] * outline, outline)
     if inside:
         return Solid(index, "stone", position[::-1], -normal[::-1], one_sided=True, casts_shadow=False)
-    return Solid(index, "rock", position, normal)
+    return Solid(index, "rock", position * _roughness(normal)[:, None], normal)
+
+
+def _roughness(direction: np.ndarray) -> np.ndarray:
+    """Shares of the radius, (V,), just below 1: the outline of a stone is no circle."""
+    waves = np.random.default_rng(3).normal(0.0, 4.5, (_ROCK_WAVES, 3))
+    heights = np.cos(direction @ waves.T + np.arange(_ROCK_WAVES)).mean(axis=1)
+    return 1.0 - _ROCK_DEPTH * (0.5 + 0.5 * np.tanh(3.0 * heights))
 
 
 def _has_floor(colliders: Sequence[dict], height: float) -> bool:
@@ -145,16 +153,21 @@ def _cylinder(index: int, cylinder: dict, partner: dict | None, bounds: np.ndarr
         outline = np.array([[inner, top], [inner, bottom]])
         position, normal = _revolve(outline, np.tile([-1.0, 0.0], (2, 1)))
         return Solid(index, "stone", position, normal, one_sided=True, casts_shadow=False)
-    outline, normals = _wall_outline(inner, outer, bottom, top)
-    if has_floor and inner > 0:  # a basin is of one stone with its floor, which lies a little above the ground
-        height = bottom + _FLOOR_RISE * outer
-        outline = np.concatenate([outline, [[inner, height], [0.0, height]]])
+    # A basin is of one stone with its floor, which lies a little above the ground.
+    floor = bottom + _FLOOR_RISE * outer if has_floor and inner > 0 else bottom
+    outline, normals = _wall_outline((inner, outer), (bottom, floor, top))
+    if floor > bottom:
+        outline = np.concatenate([outline, [[inner, floor], [0.0, floor]]])
         normals = np.concatenate([normals, [[0.0, 1.0], [0.0, 1.0]]])
     return Solid(index, "stone", *_revolve(outline, normals))
 
 
-def _wall_outline(inner: float, outer: float, bottom: float, top: float) -> tuple[np.ndarray, np.ndarray]:
-    """(K, 2) points and normals, radius and height, up the outer face, over the rounded rim and down the inner one."""
+def _wall_outline(radii: tuple[float, float], heights: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """(K, 2) points and normals, radius and height, up the outer face, over the rounded rim and down the inner one.
+
+    `heights` are those of the outer foot, the inner foot and the rim.
+    """
+    (inner, outer), (bottom, floor, top) = radii, heights
     bevel = min(_BEVEL_SHARE * (outer - inner), 0.5 * (top - bottom))
     angle = np.linspace(0.0, np.pi / 2, _BEVEL_STEPS + 1)
     outward = np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -162,7 +175,7 @@ def _wall_outline(inner: float, outer: float, bottom: float, top: float) -> tupl
     normals = [np.array([[1.0, 0.0]]), outward]
     if inner > 0:
         inward = outward[::-1] * [-1.0, 1.0]
-        points += [[inner + bevel, top - bevel] + bevel * inward, np.array([[inner, bottom]])]
+        points += [[inner + bevel, top - bevel] + bevel * inward, np.array([[inner, floor]])]
         normals += [inward, np.array([[-1.0, 0.0]])]
     else:
         points.append(np.array([[0.0, top]]))

@@ -11,16 +11,26 @@ from fontana.gl.solids import MATERIALS, Solid, make_solids
 
 
 class Stage:
-    """Draws the colliders of a scene. bounds is (2, 3) metres: what has no end is drawn within it."""
+    """Draws the colliders of a scene, once `load` has said which.
 
-    def __init__(self, context: object, colliders: Sequence[dict], bounds: np.ndarray):
+    bounds  (2, 3) m, what has no end is drawn within it; middle its centre, size its longest edge
+    """
+
+    def __init__(self, context: object):
         self.context = context
+        self._program = load_program(context, "solid.vert", "solid.frag")
+        self._shadow_program = load_program(context, "light_solid.vert", "light_solid.frag")
+        self._solids: list[tuple[Solid, object, object]] = []
+
+    def load(self, colliders: Sequence[dict], bounds: np.ndarray) -> None:
+        """Replaces what is drawn. `colliders` are a scene's, `bounds` (2, 3) metres."""
+        for _, lit, shadow in self._solids:
+            lit.release()
+            shadow.release()
         self.colliders = list(colliders)
         self.bounds = np.asarray(bounds, dtype=float)
         self.middle = self.bounds.mean(axis=0)
         self.size = float(np.ptp(self.bounds, axis=0).max())
-        self._program = load_program(context, "solid.vert", "solid.frag")
-        self._shadow_program = load_program(context, "light_solid.vert", "light_solid.frag")
         self._solids = [self._upload(solid) for solid in make_solids(self.colliders, self.bounds)]
 
     def _upload(self, solid: Solid) -> tuple[Solid, object, object]:
@@ -51,8 +61,3 @@ class Stage:
         if len(centres):
             return np.asarray(centres[solid.index], dtype=float)
         return np.array(self.colliders[solid.index].get("centre", [0.0, 0.0, 0.0]), dtype=float)
-
-    def release(self) -> None:
-        for _, lit, shadow in self._solids:
-            lit.release()
-            shadow.release()

@@ -63,6 +63,7 @@ class Cache:
             radius=radius,
             rest_density=self._rest_density,
             centres=self.centres(time),
+            centre_velocities=self._centre_velocities(time),
             time=time,
         )
 
@@ -70,6 +71,12 @@ class Cache:
         """Where the colliders are at `time` (s), in the order of the scene."""
         count = self._simulation.collider_count
         return [np.array(self._simulation.collider_centre(index, time)) for index in range(count)]
+
+    def _centre_velocities(self, time: float) -> list[np.ndarray]:
+        """m/s, within half a frame: keys are straight between frames at the closest."""
+        half = 0.25 * self.frame_duration
+        before, after = self.centres(max(0.0, time - half)), self.centres(time + half)
+        return [(b - a) / (time + half - max(0.0, time - half)) for a, b in zip(before, after, strict=True)]
 
     def bounds(self) -> np.ndarray:
         """The box (2, 3) that holds what is worth seeing in all frames. Frames that cannot be read do not count."""

@@ -5,7 +5,7 @@ uniform sampler3D noise_cube;  // white noise, repeated
 const vec3 SUN_COLOUR = vec3(2.85, 2.60, 2.22);
 const vec3 SKY_ZENITH = vec3(0.085, 0.23, 0.56);
 const vec3 SKY_HORIZON = vec3(0.62, 0.74, 0.86);
-const vec3 FAR_GROUND = vec3(0.235, 0.275, 0.225);
+const vec3 FAR_GROUND = vec3(0.150, 0.185, 0.120);
 const vec3 GROUND_COLOUR = vec3(0.21, 0.19, 0.165);
 
 float noise(vec3 p) {
@@ -35,8 +35,8 @@ vec3 treeline(vec3 direction, vec3 behind) {
     float height = 0.018 + 0.045 * fractal_noise(vec3(5.0 * around, 1.0)) + 0.010 * fractal_noise(vec3(60.0 * around, 3.0));
     float hills = 0.03 + 0.07 * fractal_noise(vec3(1.7 * around, 8.0));
     vec3 colour = mix(behind, vec3(0.36, 0.46, 0.56), 0.75 * smoothstep(0.004, -0.004, direction.y - hills));
-    vec3 leaves = vec3(0.10, 0.145, 0.085) * (0.6 + 0.9 * fractal_noise(vec3(90.0 * around, 90.0 * direction.y)));
-    return mix(colour, mix(leaves, SKY_HORIZON, 0.22), smoothstep(0.002, -0.002, direction.y - height));
+    vec3 leaves = vec3(0.065, 0.100, 0.055) * (0.35 + 1.3 * fractal_noise(vec3(90.0 * around, 90.0 * direction.y)));
+    return mix(colour, mix(leaves, SKY_HORIZON, 0.09), smoothstep(0.002, -0.002, direction.y - height));
 }
 
 // What a ray that leaves the scene meets.

@@ -2,9 +2,11 @@
 uniform mat4 view, projection;
 uniform float radius;        // m
 uniform vec2 value_range;
+uniform float shutter_time;   // s, from the time of the frame
 uniform float size_by_crowd;  // 1: drops that fly alone are drawn at their own size, not at that of a crowd
 in vec2 in_corner;
 in vec3 in_position;
+in vec3 in_velocity;
 in float in_value;
 in vec2 in_state;  // density over rest density; speed (m/s)
 out vec3 view_centre;
@@ -17,7 +19,7 @@ out float spray;  // 0 in the body of the water, 1 for a fast drop alone
 void main() {
     body = smoothstep(0.34, 0.74, in_state.x);
     shown_radius = radius * mix(1.0, mix(0.4, 1.0, body), size_by_crowd);
-    view_centre = (view * vec4(in_position, 1.0)).xyz;
+    view_centre = (view * vec4(in_position + shutter_time * in_velocity, 1.0)).xyz;
     value = (in_value - value_range.x) / (value_range.y - value_range.x);
     spray = (1.0 - smoothstep(0.45, 0.80, in_state.x)) * smoothstep(0.25, 1.5, in_state.y);
     // The silhouette of a sphere near the camera is wider than its radius: the square stands where the tangents meet it.

@@ -1,0 +1,10 @@
+"""One renderer for all tests of this folder."""
+
+import pytest
+
+from fontana.gl.renderer import Renderer
+
+
+@pytest.fixture(scope="session")
+def renderer(opengl) -> Renderer:
+    return Renderer(opengl)
