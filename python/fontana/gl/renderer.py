@@ -29,6 +29,7 @@ _NOISE_UNIT, _MAP_UNIT, _PICTURE_UNIT = 0, 5, 6
 _SUN_UNITS, _SKY_UNITS = (1, 2), (3, 4)
 _SUN_SPREAD, _SKY_SPREAD = 1.6, 40.0  # texels; a single sample stands for the whole sky
 _RIPPLE_SPEED = 1.6  # 1/s
+_GRAVITY = 9.81  # m/s^2; only says what is fast for spray to be white
 _PLASTIC = np.array([0.7548776662466927, 0.5698402909980532])  # Roberts' R2 sequence covers the square evenly
 _GOLDEN = np.array([0.6180339887498949, 0.7548776662466927])
 
@@ -153,6 +154,7 @@ class Renderer:
             "sun_direction": sun,
             "noise_cube": _NOISE_UNIT,
             "ripple_time": _RIPPLE_SPEED * self._frame.time,
+            "free_fall": np.sqrt(2.0 * _GRAVITY * self._stage.size),
             "shutter_time": moment.shutter_time,
             "light_absorption": tuple(share / self._stage.size for share in look.absorption),
             **self._sun.draw(sun, _SUN_SPREAD, *scene),

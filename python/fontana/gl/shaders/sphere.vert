@@ -4,6 +4,7 @@ uniform float radius;        // m
 uniform vec2 value_range;
 uniform float shutter_time;   // s, from the time of the frame
 uniform float size_by_crowd;  // 1: drops that fly alone are drawn at their own size, not at that of a crowd
+uniform float free_fall;     // m/s, a speed that fits the size of the stage
 in vec2 in_corner;
 in vec3 in_position;
 in vec3 in_velocity;
@@ -21,7 +22,7 @@ void main() {
     shown_radius = radius * mix(1.0, mix(0.4, 1.0, body), size_by_crowd);
     view_centre = (view * vec4(in_position + shutter_time * in_velocity, 1.0)).xyz;
     value = (in_value - value_range.x) / (value_range.y - value_range.x);
-    spray = (1.0 - smoothstep(0.45, 0.80, in_state.x)) * smoothstep(0.25, 1.5, in_state.y);
+    spray = (1.0 - smoothstep(0.45, 0.80, in_state.x)) * smoothstep(0.05, 0.33, in_state.y / free_fall);
     // The silhouette of a sphere near the camera is wider than its radius: the square stands where the tangents meet it.
     float away = max(length(view_centre), 1.01 * shown_radius);
     float reach = shown_radius * away / sqrt(away * away - shown_radius * shown_radius);

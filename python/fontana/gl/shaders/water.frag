@@ -30,16 +30,23 @@ vec3 slope(ivec2 at, ivec2 axis, vec3 here, vec2 size) {
     return abs(ahead.z) < abs(behind.z) ? ahead : behind;
 }
 
-// Where the bent ray meets the scene, found by walking to the depth of what was met before.
+// Where the bent ray meets the scene, found by walking to the depth of what was met before. What lies there may hide
+// behind a rim that is nearer than the water: then a shorter way has to do.
 vec3 refracted(vec3 here, vec3 ray, vec2 straight) {
-    float far = texture(scene_depth, straight).r;
-    vec2 at = straight;
-    for (int k = 0; k < 3; ++k) {
-        float way = min((far + here.z) / max(-ray.z, 0.2), stage_size);
-        at = clamp(to_uv(here + max(way, 0.0) * ray), 0.001, 0.999);
-        far = texture(scene_depth, at).r;
+    vec2 met = straight;
+    float far = texture(scene_depth, met).r, share = 1.0;
+    for (int k = 0; k < 6; ++k) {
+        float way = share * min((far + here.z) / max(-ray.z, 0.2), stage_size);
+        vec2 at = clamp(to_uv(here + max(way, 0.0) * ray), 0.001, 0.999);
+        float depth = texture(scene_depth, at).r;
+        if (depth < -here.z) {
+            share *= 0.75;
+        } else {
+            met = at;
+            far = depth;
+        }
     }
-    return texture(scene_colour, far < -here.z ? straight : at).rgb;
+    return texture(scene_colour, met).rgb;
 }
 
 // The scene in the mirror where it is in the picture, else the surroundings.
