@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from fontana.gl.camera import Camera
 from fontana.scene import load_scene
 from fontana.viewer.bounds import worth_seeing
 from fontana.viewer.grip import Grip
-from fontana.viewer.keys import KEYS
+from fontana.viewer.keys import KEYS, MOUSE
 from fontana.viewer.layout import Layout
 from fontana.viewer.live import LiveSource
 from fontana.viewer.model import ViewerModel
@@ -84,6 +85,12 @@ def test_a_cache_is_not_pushed_or_switched(drop_cache, play):
     model.next_backend()
     assert model.grip.centre is None
     assert len(model.messages.current()) == 2
+
+
+def test_the_documents_have_every_key():
+    text = (Path(__file__).parents[2] / "docs" / "viewing.md").read_text(encoding="utf-8")
+    assert [key for key in KEYS if f"| `{key.shown}` | {key.what} |" not in text] == []
+    assert [row for row in MOUSE if "| {} | {} |".format(*row) not in text] == []
 
 
 # ---- settings

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 PANEL_WIDTH = 23.0  # in heights of the font, as all lengths here
 MENU_HEIGHT = 1.55
 TRANSPORT_HEIGHT = 2.9
-STATISTICS_WIDTH = 17.0
 _LEAST_VIEW = 20.0  # the panel gives way where less than this would be left
 
 
@@ -36,20 +35,27 @@ class Layout:
 
     @property
     def panel_width(self) -> float:
-        wanted = PANEL_WIDTH * self.em
+        wanted = self._pixels(PANEL_WIDTH)
         return wanted if self.has_panel and self.width - wanted >= _LEAST_VIEW * self.em else 0.0
 
     @property
     def _top(self) -> float:
-        return MENU_HEIGHT * self.em
+        return self._pixels(MENU_HEIGHT)
+
+    @property
+    def _bottom(self) -> float:
+        return self._pixels(TRANSPORT_HEIGHT)
+
+    def _pixels(self, heights: float) -> float:
+        """Whole ones: a picture between two pixels would blur."""
+        return round(heights * self.em)
 
     @property
     def view(self) -> Box:
         """What is left for the picture."""
-        height = self.height - self._top - TRANSPORT_HEIGHT * self.em
+        height = self.height - self._top - self._bottom
         return Box(self.panel_width, self._top, self.width - self.panel_width, max(0.0, height))
 
     @property
     def transport(self) -> Box:
-        height = TRANSPORT_HEIGHT * self.em
-        return Box(self.panel_width, self.height - height, self.width - self.panel_width, height)
+        return Box(self.panel_width, self.height - self._bottom, self.width - self.panel_width, self._bottom)

@@ -14,6 +14,8 @@ from fontana.viewer.model import ViewerModel
 
 _MOST_KERNELS = 8
 _LEGEND_STEPS = 64
+_LEGEND_HEIGHT = 4.0  # in heights of the font, without its padding
+_MARGIN = 0.7  # likewise, around what lies over the picture
 
 
 def overlay_flags() -> int:
@@ -24,7 +26,7 @@ def overlay_flags() -> int:
 
 def _begin(name: str, box: Box, pivot: tuple[float, float], alpha: float = 0.72) -> None:
     """A box of its own size at a corner of `box`: pivot (0, 0) is the upper left, (1, 1) the lower right."""
-    margin = 0.7 * imgui.get_font_size()
+    margin = _MARGIN * imgui.get_font_size()
     x = box.x + margin + pivot[0] * (box.width - 2 * margin)
     y = box.y + margin + pivot[1] * (box.height - 2 * margin)
     imgui.set_next_window_pos(ImVec2(x, y), 0, ImVec2(*pivot))
@@ -40,18 +42,31 @@ def draw_statistics(model: ViewerModel, box: Box, draw_seconds: float) -> None:
     snapshot = model.snapshot
     if not model.shows_statistics or snapshot is None:
         return
+    rows = statistics(snapshot, model.source, draw_seconds)
+    if model.source.is_live and not model.source.settings.get("solver.profile"):
+        rows.append(("by kernel", "see Profile in Fluid options"))
+    rows = rows[: _rows_that_fit(model, box)]
+    if not rows:
+        return
     _begin("statistics", box, (1.0, 0.0))
     if imgui.begin_table("facts", 2, imgui.TableFlags_.sizing_fixed_fit.value):
-        for name, text in statistics(snapshot, model.source, draw_seconds):
+        for name, text in rows:
             imgui.table_next_row()
             imgui.table_next_column()
             imgui.text_disabled(name)
             imgui.table_next_column()
             imgui.text_unformatted(text)
         imgui.end_table()
-    if not model.source.settings.get("solver.profile") and model.source.is_live:
-        imgui.text_disabled("Fluid options, Profile: ms by kernel")
     imgui.end()
+
+
+def _rows_that_fit(model: ViewerModel, box: Box) -> int:
+    """How many rows leave the legend its place below."""
+    em, style = imgui.get_font_size(), imgui.get_style()
+    taken = 2 * _MARGIN * em + 2 * style.window_padding.y
+    if model.look.style == "points":
+        taken += _LEGEND_HEIGHT * em + 2 * style.window_padding.y + _MARGIN * em
+    return max(0, int((box.height - taken) / (imgui.get_text_line_height() + 2 * style.cell_padding.y)))
 
 
 def statistics(snapshot: object, source: object, draw_seconds: float) -> list[tuple[str, str]]:
@@ -131,7 +146,7 @@ def draw_messages(model: ViewerModel, box: Box) -> None:
         return
     em = imgui.get_font_size()
     width = max(12 * em, min(0.5 * box.width, 42 * em))
-    imgui.set_next_window_pos(ImVec2(box.x + 0.7 * em, box.y + 0.7 * em))
+    imgui.set_next_window_pos(ImVec2(box.x + _MARGIN * em, box.y + _MARGIN * em))
     imgui.set_next_window_size(ImVec2(width, 0))
     imgui.set_next_window_bg_alpha(0.92)
     flags = imgui.WindowFlags_
