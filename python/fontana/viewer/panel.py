@@ -44,10 +44,8 @@ def _heading(model: ViewerModel) -> None:
     imgui.text_unformatted(model.source.scene.name.replace("_", " "))
     imgui.same_line()
     imgui.text_disabled("live" if model.source.is_live else "cache")
-    if not model.source.is_live:
-        return
     complaint = model.source.settings.complaint()
-    if complaint:
+    if complaint and model.source.is_live and not model.source.failure:
         imgui.push_text_wrap_pos(0.0)
         imgui.text_colored(ImVec4(*ERROR), complaint.replace("%", "%%"))
         imgui.pop_text_wrap_pos()

@@ -12,11 +12,14 @@ from fontana.viewer.model import ViewerModel
 
 _ROOM = 0.25  # by how much the stage is larger than what it must hold, so that it is not made anew in every frame
 _SLOW = 0.12  # s: pictures that take longer are drawn with fewer pixels while things move
-_STILL = 0.4  # s without a change after which they get all of them
+_STILL = 0.4  # s without a change after which a better one is drawn
+_SAMPLES = 8  # of the best one: smooth edges and soft shadows
+_PATIENCE = 1.0  # s: where the best one would take longer, all pixels must do
+_COARSE, _PLAIN, _FINE = range(3)
 
 
 class Picture:
-    """Draws what the model shows into a texture. `seconds` is what the last drawing took."""
+    """Draws what the model shows into a texture. `seconds` is what the last plain or coarse drawing took."""
 
     def __init__(self, context: object):
         self.context = context
@@ -24,7 +27,7 @@ class Picture:
         self.seconds = 0.0
         self._texture = self._target = None
         self._drawn: object = None
-        self._is_coarse = False
+        self._level = _COARSE
         self._full_seconds = 0.0
         self._changed_at = 0.0
         self._snapshot = None
@@ -39,10 +42,15 @@ class Picture:
         wanted = (id(model.snapshot), size, _camera_key(model.camera), _look_key(model), model.stage_version)
         if wanted != self._drawn:
             self._drawn, self._changed_at = wanted, now
-            self._draw(model, size, is_coarse=self._full_seconds > _SLOW)
-        elif self._is_coarse and now - self._changed_at > _STILL:
-            self._draw(model, size, is_coarse=False)
+            self._draw(model, size, _COARSE if self._full_seconds > _SLOW else _PLAIN)
+        elif not self.is_final and now - self._changed_at > _STILL:
+            self._draw(model, size, self._level + 1)
         return self._texture
+
+    @property
+    def is_final(self) -> bool:
+        """Whether the picture gets no better."""
+        return self._level >= (_FINE if _SAMPLES * self._full_seconds < _PATIENCE else _PLAIN)
 
     def image(self, model: ViewerModel, size: tuple[int, int], samples: int = 1) -> np.ndarray:
         """The picture as (height, width, 3) bytes, upper row first, with all its pixels."""
@@ -50,17 +58,19 @@ class Picture:
         look = replace(model.look, color_range=model.color_range(), samples=samples)
         return self.renderer.image(model.camera, size, look)
 
-    def _draw(self, model: ViewerModel, size: tuple[int, int], is_coarse: bool) -> None:
+    def _draw(self, model: ViewerModel, size: tuple[int, int], level: int) -> None:
         start = time.monotonic()
         self._set(model)
-        pixels = tuple(max(1, length // (2 if is_coarse else 1)) for length in size)
+        pixels = tuple(max(1, length // (2 if level == _COARSE else 1)) for length in size)
         self._resize(pixels)
-        look = replace(model.look, color_range=model.color_range())
+        samples = _SAMPLES if level == _FINE else 1
+        look = replace(model.look, color_range=model.color_range(), samples=samples)
         self.renderer.draw(model.camera, pixels, look, self._target)
         self.context.finish()  # so that the time is that of the device
-        self.seconds = time.monotonic() - start
-        self._is_coarse = is_coarse
-        self._full_seconds = 4 * self.seconds if is_coarse else self.seconds
+        self._level = level
+        if level != _FINE:
+            self.seconds = time.monotonic() - start
+            self._full_seconds = (4 if level == _COARSE else 1) * self.seconds
 
     def _set(self, model: ViewerModel) -> None:
         """Hands over the stage and the frame where they are not those of the last picture."""
