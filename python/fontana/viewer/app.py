@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import click
+
 from fontana.scene import Scene
 from fontana.viewer.glfw_window import GlfwWindow, import_libraries
 
@@ -20,12 +22,16 @@ def open_viewer(what: Scene | Path, size: tuple[int, int], is_playing: bool) -> 
     try:
         window = GlfwWindow(f"{source.scene.name} - Fontana", size)
         try:
-            viewer = ViewerWindow(ViewerModel(source), window)
+            model = ViewerModel(source)
+            viewer = ViewerWindow(model, window)
             try:
                 viewer.run()
             finally:
                 window.hide()
-                viewer.close()
+                said = len(model.messages.history)
+                viewer.close()  # which finishes a movie
+                for text in model.messages.history[said:]:
+                    click.echo(text)
         finally:
             window.close()
     finally:

@@ -31,13 +31,11 @@ def draw_panel(model: ViewerModel) -> None:
     _picture_pane(model)
     if model.source.is_live:
         _hand_pane(model)
-    imgui.begin_disabled(not model.source.is_live)
     for title, names, is_open in (*_PANES, *_other_groups()):
         if _pane(title, is_open):
             _parameter_rows(model, title, names)
     if model.source.scene.colliders and _pane("Implicit collisions", False):
         _collider_rows(model)
-    imgui.end_disabled()
 
 
 def _heading(model: ViewerModel) -> None:
@@ -164,10 +162,10 @@ def _parameter_rows(model: ViewerModel, title: str, names: tuple[str, ...]) -> N
 def _parameter_row(model: ViewerModel, path: str, row: object, value: object) -> None:
     settings = model.source.settings
     fields.label(row.label, f"{path}: {row.doc}", settings.is_changed(path))
-    changed, value = fields.field(row, value, path)
+    changed, value = _field(model, row, value, path)
     if changed:
         model.set(path, value)
-    if imgui.begin_popup_context_item(f"menu {path}"):
+    if model.source.is_live and imgui.begin_popup_context_item(f"menu {path}"):
         if imgui.menu_item_simple("As in the scene"):
             model.set(path, settings.original(path))
         imgui.end_popup()
@@ -188,11 +186,17 @@ def _collider_rows(model: ViewerModel) -> None:
 def _collider_row(model: ViewerModel, index: int, collider: dict, row: object) -> None:
     moves = "keys" in collider and row.name in ("centre", "velocity")
     fields.label(row.name.capitalize(), f"{row.doc} The keys of the scene move it." if moves else row.doc)
-    imgui.begin_disabled(moves)
-    changed, value = fields.field(row, collider[row.name], f"{index}.{row.name}")
-    imgui.end_disabled()
+    changed, value = _field(model, row, collider[row.name], f"{index}.{row.name}", is_fixed=moves)
     if changed:
         model.set_collider(index, row.name, value)
+
+
+def _field(model: ViewerModel, row: object, value: object, name: str, is_fixed: bool = False) -> tuple[bool, object]:
+    """The field of a row; what a cache was simulated with is only shown."""
+    imgui.begin_disabled(is_fixed or not model.source.is_live)
+    result = fields.field(row, value, name)
+    imgui.end_disabled()
+    return result
 
 
 def _rounded(value: float) -> float:
