@@ -9,6 +9,7 @@ import pytest
 from scenery import BOUNDS, FRONT, POINTS, SIZE, changed, frame, picture
 
 import fontana
+from fontana.gl.camera import Camera
 from fontana.gl.color_maps import color_map_table
 from fontana.gl.frame_data import FrameData, Look
 from fontana.gl.renderer import Renderer
@@ -36,16 +37,13 @@ def test_a_sphere_has_the_silhouette_of_a_sphere(renderer):
 
 def test_a_sphere_beside_the_camera_is_not_cut_off(renderer):
     """Its silhouette is an ellipse that is larger than its radius at that depth."""
-    near = np.array([[0.55, 0.5, 3.0]])
-    seen = changed(
-        picture(renderer, frame(near, radius=0.25), size=(240, 90)), picture(renderer, NOBODY, size=(240, 90))
-    )
-    columns = np.nonzero(seen)[1]
+    near, radius, size = np.array([[0.55, 0.5, 2.8]]), 0.6, (240, 90)
+    seen = changed(picture(renderer, frame(near, radius=radius), size=size), picture(renderer, NOBODY, size=size))
+    columns = np.nonzero(seen[45])[0]
     scale = 90 / (2 * np.tan(np.radians(15)))
-    angle, half = np.arctan2(0.55, 1.0), np.arcsin(0.25 / np.hypot(0.55, 1.0))
-    edges = 120 + scale * np.tan([angle - half, angle + half])
-    assert columns.min() == pytest.approx(edges[0], abs=1.5)
-    assert columns.max() == pytest.approx(min(edges[1], 239), abs=1.5)
+    left_edge = np.arctan2(0.55, 1.2) - np.arcsin(radius / np.hypot(0.55, 1.2))
+    assert columns.min() == pytest.approx(120 + scale * np.tan(left_edge), abs=1.5)
+    assert columns.max() == 239
 
 
 def test_the_nearer_sphere_is_in_front(renderer):
@@ -58,12 +56,17 @@ def test_the_nearer_sphere_is_in_front(renderer):
 
 
 def test_spheres_cut_each_other_where_they_meet(renderer):
-    """Depth belongs to the pixel: of two that overlap side by side each shows its half."""
-    data = frame([[-0.08, 0.5, 0.0], [0.08, 0.5, 0.0]], speed=[0.0, 1.0], radius=0.2)
-    row = picture(renderer, data)[45]
+    """Depth belongs to the pixel: of two that overlap each shows what is in front, not the nearer one all of it."""
+    radius, apart, ahead = 0.4, 0.16, 0.2
+    data = frame([[-apart, 0.5, 0.0], [apart, 0.5, ahead]], speed=[0.0, 1.0], radius=radius)
+    camera = Camera.looking([0.0, 0.5, 40.0], [0.0, 0.5, 0.0], 1.3)  # from far away: rays are parallel
+    row = picture(renderer, data, camera=camera)[45, 20:100]
+    x = (np.arange(20, 100) + 0.5 - 60) * 2 * 40 * np.tan(np.radians(0.65)) / 90
+    slow, fast = (np.sqrt(np.clip(radius**2 - (x - c) ** 2, 0, None)) for c in (-apart, apart))
     ends = [hue(255 * color) for color in color_map_table("turbo")[[0, -1]]]
-    is_fast = [hue(pixel) @ ends[1] > hue(pixel) @ ends[0] for pixel in row[50:71]]
-    assert is_fast == [False] * 10 + [is_fast[10]] + [True] * 10
+    is_fast = np.array([hue(pixel) @ ends[1] > hue(pixel) @ ends[0] for pixel in row])
+    both = (slow > 0) & (fast > 0)
+    assert (is_fast[both] != (ahead + fast > slow)[both]).sum() <= 1
 
 
 @pytest.mark.parametrize("color_by", ["speed", "density", "pressure", "id"])

@@ -89,12 +89,9 @@ class Renderer:
 
     def image(self, camera: Camera, size: tuple[int, int], look: Look) -> np.ndarray:
         """The picture as (height, width, 3) bytes, upper row first."""
-        target = self.context.simple_framebuffer(size, 3)
-        try:
-            self.draw(camera, size, look, target)
-            rows = np.frombuffer(target.read(components=3, alignment=1), np.uint8)
-        finally:
-            target.release()
+        targets = self._targets_of(size)
+        self.draw(camera, size, look, targets.shown)
+        rows = np.frombuffer(targets.shown.read(components=3, alignment=1), np.uint8)
         return rows.reshape(size[1], size[0], 3)[::-1].copy()
 
     def _draw_sample(self, camera: Camera, targets: Targets, look: Look, sample: int) -> object:

@@ -18,6 +18,7 @@ class Targets:
         self.thickness = self._texture(self.small_size, 2, "f2")
         self.water_colour = self._texture(size, 4, "f2")
         self.average = self._texture(size, 4, "f4", linear=False)
+        self.picture = self._texture(size, 3, "f1", linear=False)
         depth = self._keep(context.depth_renderbuffer(size))
         self.scene = self._framebuffer([self.scene_colour, self.scene_depth], depth)
         self.backdrop = self._framebuffer([self.scene_colour, self.scene_depth])
@@ -26,6 +27,7 @@ class Targets:
         self.water_thickness = self._framebuffer([self.thickness])
         self.water = self._framebuffer([self.water_colour])
         self.averaged = self._framebuffer([self.average])
+        self.shown = self._framebuffer([self.picture])
 
     def release(self) -> None:
         for thing in reversed(self._made):

@@ -93,7 +93,7 @@ def _png(picture: np.ndarray, stamp: str) -> bytes:
 
 
 def _read_stamp(path: Path) -> str | None:
-    """What a picture was made from; None if it is not one of ours, "" if it is damaged."""
+    """What a picture was made from; None if it is not one of ours, which appear only when they are complete."""
     from PIL import Image
 
     try:
@@ -101,5 +101,5 @@ def _read_stamp(path: Path) -> str | None:
             stamp = image.info.get(_STAMP)
             image.load()
     except (OSError, SyntaxError, ValueError):  # Pillow raises SyntaxError for a broken PNG
-        return "" if path.stat().st_size == 0 else None
+        return None
     return stamp

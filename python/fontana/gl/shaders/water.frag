@@ -30,14 +30,18 @@ vec3 slope(ivec2 at, ivec2 axis, vec3 here, vec2 size) {
     return abs(ahead.z) < abs(behind.z) ? ahead : behind;
 }
 
-// Where the bent ray meets the scene, found by walking to the depth of what was met before. What lies there may hide
-// behind a rim that is nearer than the water: then a shorter way has to do.
-vec3 refracted(vec3 here, vec3 ray, vec2 straight) {
+// Where the bent ray meets the scene, found by walking to the depth of what was met before. Behind the water it turns
+// back, nearly all the way: the faces of a sheet are parallel, those of a drop are not. What it meets may hide behind a
+// rim that is nearer than the water: then a shorter way has to do.
+vec3 refracted(vec3 here, vec3 away, vec3 ray, float thickness, vec2 straight) {
+    vec3 leaving = normalize(mix(ray, away, 0.8));
     vec2 met = straight;
     float far = texture(scene_depth, met).r, share = 1.0;
     for (int k = 0; k < 6; ++k) {
-        float way = share * min((far + here.z) / max(-ray.z, 0.2), stage_size);
-        vec2 at = clamp(to_uv(here + max(way, 0.0) * ray), 0.001, 0.999);
+        float within = min(thickness, max(far + here.z, 0.0) / max(-ray.z, 0.2));
+        vec3 exit = here + share * within * ray;
+        float beyond = max(far + exit.z, 0.0) / max(-leaving.z, 0.2);
+        vec2 at = clamp(to_uv(exit + min(beyond, 4.0 * stage_size) * leaving), 0.001, 0.999);
         float depth = texture(scene_depth, at).r;
         if (depth < -here.z) {
             share *= 0.75;
@@ -85,7 +89,7 @@ void main() {
     vec3 light = sun * (0.35 + 0.65 * max(dot(facing, sun_direction), 0.0)) + ambient_light(facing) * open_sky;
 
     vec3 through = exp(-light_absorption * water.x);
-    vec3 body = refracted(here, refract(away, normal, 1.0 / INDEX), uv) * through + SCATTER * light * (1.0 - through);
+    vec3 body = refracted(here, away, refract(away, normal, 1.0 / INDEX), water.x, uv) * through + SCATTER * light * (1.0 - through);
     float fresnel = 0.02 + 0.98 * pow(1.0 - max(-dot(normal, away), 0.0), 5.0);
     vec3 mirror = reflected(here, reflect(away, normal));
     vec3 halfway = normalize(sun_direction - mat3(camera_to_world) * away);
