@@ -15,6 +15,7 @@ from fontana.viewer.model import ViewerModel
 _MOST_KERNELS = 8
 _LEGEND_STEPS = 64
 _LEGEND_HEIGHT = 4.0  # in heights of the font, without its padding
+_HAND, _HAND_EDGE = (1.0, 1.0, 1.0, 0.95), (0.0, 0.0, 0.0, 0.45)
 _MARGIN = 0.7  # likewise, around what lies over the picture
 
 
@@ -181,14 +182,14 @@ def draw_hand(model: ViewerModel, box: Box) -> None:
         return
     half = np.tan(np.radians(model.camera.field_of_view) / 2)
     radius = grip.radius * size[1] / (2.0 * half * depths[0])
-    color = imgui.get_color_u32(ImVec4(*ACCENT))
-    soft = imgui.get_color_u32(ImVec4(*ACCENT[:3], 0.12))
     start, end = (ImVec2(box.x + x, box.y + y) for x, y in pixels)
     draws = imgui.get_background_draw_list()
-    draws.add_circle_filled(start, radius, soft, 48)
-    draws.add_circle(start, radius, color, 48, 1.5)
-    draws.add_line(start, end, color, 2.5)
-    draws.add_circle_filled(end, 4.0, color)
+    draws.add_circle_filled(start, radius, imgui.get_color_u32(ImVec4(1.0, 1.0, 1.0, 0.10)), 64)
+    for color, width in ((_HAND_EDGE, 4.0), (_HAND, 2.0)):  # seen on light ground and on dark water
+        shade = imgui.get_color_u32(ImVec4(*color))
+        draws.add_circle(start, radius, shade, 64, width)
+        draws.add_line(start, end, shade, width + 1.0)
+        draws.add_circle_filled(end, 3.0 + width, shade)
 
 
 # ---- the keys
