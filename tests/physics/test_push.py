@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+import fontana
+
 DT = 0.002
 PUSH = (3.0, -2.0, 5.0)
 RADIUS = 0.15
@@ -99,3 +101,15 @@ def test_the_smallest_ball_at_a_particle_is_still_a_number(backend, make_simulat
     simulation.add_particles(np.zeros((1, 3), dtype=np.float32))
     simulation.step_frame()
     assert simulation.read("velocity")[0] == pytest.approx(np.multiply(DT, PUSH), rel=1e-5)
+
+
+def test_the_python_call_is_in_the_unit_of_the_scene():
+    """Two particles six centimetres apart in a scene of centimetres; the push reaches the first alone."""
+    simulation = fontana.Simulation(backend="cpu", simulation_scale=0.01, gravity=[0, 0, 0], timestep=DT, substeps=1)
+    simulation.add_particles([[3.0, 0.0, 0.0], [9.0, 0.0, 0.0]])
+    simulation.push((6.0, 0.0, 0.0), centre=(3.0, 0.0, 0.0), radius=2.0)
+    frame = simulation.step()
+    assert frame.velocity[0] == pytest.approx((100 * 6.0 * DT, 0.0, 0.0))
+    assert not frame.velocity[1].any()
+    simulation.push((6.0, 0.0, 0.0), centre=(3.0, 0.0, 0.0), radius=0.0)
+    assert simulation.step().velocity[0] == pytest.approx(frame.velocity[0])

@@ -357,3 +357,13 @@ def test_the_window_is_closed_by_key(sit_down):
     desk = sit_down()
     desk.press("q")
     assert not desk.model.is_open
+
+
+def test_the_window_is_closed_by_its_frame(sit_down):
+    """What a window manager asks for, in the middle of a frame of 100 000 substeps."""
+    desk = sit_down(time__substeps=100000, time__timestep=1.0)
+    desk.press("space")
+    desk.wait(lambda: desk.source.fraction)
+    desk.window._glfw.set_window_should_close(desk.window.handle, True)
+    desk.turn()
+    assert not desk.model.is_open

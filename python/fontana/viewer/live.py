@@ -13,6 +13,7 @@ from fontana.formats import particle_radius
 from fontana.gl.frame_data import FrameData
 from fontana.runs.runner import frame_record
 from fontana.scene import Scene
+from fontana.simulation import set_push
 from fontana.viewer.orders import Orders, Push
 from fontana.viewer.rates import SchemeRates
 from fontana.viewer.settings import FROM_THE_START, Settings, surface
@@ -80,11 +81,6 @@ class LiveSource:
     def frame_rate(self) -> float:
         """Frames a second at which it looks natural."""
         return 1.0 / self.settings.derived().frame_duration
-
-    @property
-    def spacing(self) -> float:
-        """The particle spacing in the scene's unit."""
-        return self.settings.get("fluid.particle_spacing") / self.settings.get("time.simulation_scale")
 
     # ---- what the window asks for
 
@@ -225,14 +221,11 @@ class LiveSource:
 
     def _set_push(self, push: Push | None) -> None:
         """The hand's, or else what the settings say."""
-        if push is None:
-            values = {path: self.settings.get(f"forces.{path}") for path in ("push", "push_centre", "push_radius")}
-        else:
-            scale = self._simulation.get("time.simulation_scale")
-            centre = tuple(scale * x for x in push.centre)
-            values = {"push": push.acceleration, "push_centre": centre, "push_radius": scale * push.radius}
-        for name, value in values.items():
-            self._simulation.set(f"forces.{name}", value)
+        if push is not None:
+            set_push(self._simulation, push.acceleration, push.centre, push.radius)
+            return
+        for path in ("forces.push", "forces.push_centre", "forces.push_radius"):
+            self._simulation.set(path, self.settings.get(path))
 
     def _show(self, record: Mapping[str, object], scheme: str, phases: Mapping[str, float]) -> None:
         """Reads the frame and makes it the one to be seen."""

@@ -43,6 +43,7 @@ class ViewerModel:
         self.is_screenshot_due = self.is_window_shot_due = False
         self.is_recording = False
         self.aspect = 16 / 9
+        self.snapshot = source.snapshot
         self.stage_version = 0  # raised when colliders are to be drawn anew
         self._ranges: dict[str, tuple[float, float]] = {}
         self._told: set[object] = set()
@@ -52,16 +53,13 @@ class ViewerModel:
     # ---- each time the window draws
 
     def update(self) -> None:
-        """Moves a cache on, and says what went wrong since."""
+        """Moves a cache on, says what went wrong since, and takes up the frame that all of this turn shows."""
         if not self.source.is_live:
             self.source.tick(time.monotonic())
             for number in sorted(set(self.source.skipped) - self._told):
                 self._told.add(number)
                 self.messages.say(self.source.skipped[number], is_error=True)
-
-    @property
-    def snapshot(self) -> object | None:
-        return self.source.snapshot
+        self.snapshot = self.source.snapshot
 
     @property
     def colliders(self) -> list[dict]:
@@ -164,7 +162,8 @@ class ViewerModel:
         if not self.source.is_live:
             self.messages.say("a cache cannot be pushed; view its scene to play with the fluid")
         elif self.snapshot:
-            self.grip.take(*self.camera.ray(pixel, size), self.snapshot.data.position, self.source.spacing)
+            data = self.snapshot.data
+            self.grip.take(*self.camera.ray(pixel, size), data.position, 2.0 * data.radius)
 
     def drag(self, pixel: tuple[float, float], size: tuple[int, int]) -> None:
         if self.grip.centre is not None:

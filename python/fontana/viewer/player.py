@@ -52,11 +52,6 @@ class CachePlayer:
         return self.cache.fps
 
     @property
-    def spacing(self) -> float:
-        """The particle spacing in the scene's unit."""
-        return 2.0 * self._shown.data.radius if self._shown else 1.0
-
-    @property
     def number(self) -> int:
         """The frame whose turn it is; it may still be on its way."""
         return self._number
