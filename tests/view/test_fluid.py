@@ -152,6 +152,22 @@ def test_an_open_shutter_draws_what_moves_along_its_way(renderer):
     assert grown == pytest.approx([0.4 * scale, 0.4 * scale], abs=3.0)
 
 
+def test_a_scene_in_centimetres_looks_like_one_in_metres(renderer):
+    positions = np.random.default_rng(6).uniform([-0.5, 0.1, -0.5], [0.5, 0.6, 0.5], (3000, 3))
+    thin = np.full(3000, 500.0)
+    images = []
+    for unit in (1.0, 100.0):
+        rock = {"type": "sphere_outside", "centre": [0.0, 0.3 * unit, 0.6 * unit], "radius": 0.1 * unit}
+        data = frame(positions * unit, 1.0 * unit, 0.025 * unit, density=thin, simulation_scale=1 / unit)
+        camera = Camera.looking([0.0, 1.0 * unit, 4.0 * unit], [0.0, 0.3 * unit, 0.0], 25.0)
+        renderer.set_stage([FLOOR, rock], BOUNDS * unit)
+        renderer.set_frame(data)
+        images.append(renderer.image(camera, SIZE, FLUID).astype(float))
+    difference = np.abs(images[0] - images[1]).max(axis=2)
+    assert difference.mean() < 1.0
+    assert (difference > 30).mean() < 0.01
+
+
 def draw_reference(renderer) -> np.ndarray:
     colliders = [
         FLOOR,

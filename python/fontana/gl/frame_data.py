@@ -19,16 +19,17 @@ COLOR_MAPS = ("viridis", "turbo")
 class FrameData:
     """The particles and colliders at one time.
 
-    position      (N, 3) m
-    velocity      (N, 3) m/s
-    density       (N,) kg/m^3
-    pressure      (N,) Pa
-    id            (N,)
-    radius        m, half the particle spacing
-    rest_density  kg/m^3
-    centres       (M, 3) m, where the colliders of the stage are now; none: where the scene puts them
+    position           (N, 3) m
+    velocity           (N, 3) m/s
+    density            (N,) kg/m^3
+    pressure           (N,) Pa
+    id                 (N,)
+    radius             m, half the particle spacing
+    rest_density       kg/m^3
+    centres            (M, 3) m, where the colliders of the stage are now; none: where the scene puts them
     centre_velocities  (M, 3) m/s; none: they stand still
-    time          s
+    time               s
+    simulation_scale   metres that one unit of length of the scene is; what is in m above is in that unit then
     """
 
     position: np.ndarray
@@ -41,6 +42,7 @@ class FrameData:
     centres: Sequence[np.ndarray] = ()
     centre_velocities: Sequence[np.ndarray] = ()
     time: float = 0.0
+    simulation_scale: float = 1.0
 
     def centres_at(self, seconds: float) -> list[np.ndarray]:
         """Where the colliders are so long after the frame."""
@@ -53,9 +55,9 @@ class FrameData:
         return len(self.position)
 
     def values(self, color_by: str) -> np.ndarray:
-        """What the particles are coloured by, (N,) float32."""
+        """What the particles are coloured by, (N,) float32: speed in m/s, the others as they are."""
         if color_by == "speed":
-            return np.linalg.norm(self.velocity, axis=1).astype(np.float32)
+            return (self.simulation_scale * np.linalg.norm(self.velocity, axis=1)).astype(np.float32)
         return np.asarray(getattr(self, color_by), dtype=np.float32)
 
     def value_range(self, color_by: str) -> tuple[float, float]:

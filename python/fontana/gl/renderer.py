@@ -151,7 +151,7 @@ class Renderer:
             "sun_direction": sun,
             "noise_cube": _NOISE_UNIT,
             "ripple_time": _RIPPLE_SPEED * self._frame.time,
-            "free_fall": np.sqrt(2.0 * _GRAVITY * self._stage.size),
+            "free_fall": np.sqrt(2.0 * _GRAVITY * self._frame.simulation_scale * self._stage.size),
             "shutter_time": moment.shutter_time,
             "light_absorption": tuple(share / self._stage.size for share in look.absorption),
             **self._sun.draw(sun, _SUN_SPREAD, *scene),

@@ -36,6 +36,7 @@ class Cache:
         self.scene = resolve(manifest.data["scene"], manifest.data["scene"]["name"])
         self._simulation = self.scene.build()
         self._rest_density = self._simulation.get("fluid.rest_density")
+        self._scale = self._simulation.get("time.simulation_scale")
         self.frame_duration = self._simulation.derived().frame_duration
 
     @property
@@ -65,6 +66,7 @@ class Cache:
             centres=self.centres(time),
             centre_velocities=self._centre_velocities(time),
             time=time,
+            simulation_scale=self._scale,
         )
 
     def centres(self, time: float) -> list[np.ndarray]:
