@@ -1,13 +1,20 @@
 """One test text for every backend: a test that takes `backend` or `scheme` runs on each."""
 
 import os
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import fontana_command
 
 from fontana import _core
 
-BACKENDS = ("cpu", "opencl")
+sys.path.append(str(Path(__file__).parent / "cuda_stand_in"))
+import stand_in  # noqa: E402
+
+BACKENDS = ("cpu", "cuda", "opencl")
 SCHEMES = tuple((backend, neighbors) for backend in BACKENDS for neighbors in ("grid", "all-pairs"))
 
 
@@ -22,15 +29,35 @@ def require_backend(name):
     pytest.skip(reason)
 
 
+def cuda_environment():
+    """What CUDA runs on in tests: a real driver where one has a GPU, else the stand-in driver, which runs NVRTC's PTX
+    on the CPU. It shows its device only with these variables, so that other tests see the machine as it is."""
+    if any(device.available for device in _core.devices() if device.backend == "cuda"):
+        return {}
+    return stand_in.environment()
+
+
+@pytest.fixture
+def use_backend(monkeypatch):
+    """Call it with a backend's name before using that backend."""
+
+    def use(name):
+        for variable, value in (cuda_environment() if name == "cuda" else {}).items():
+            monkeypatch.setenv(variable, value)
+        require_backend(name)
+
+    return use
+
+
 @pytest.fixture(params=BACKENDS)
-def backend(request):
-    require_backend(request.param)
+def backend(request, use_backend):
+    use_backend(request.param)
     return request.param
 
 
 @pytest.fixture(params=SCHEMES, ids=lambda scheme: "-".join(scheme))
-def scheme(request):
-    require_backend(request.param[0])
+def scheme(request, use_backend):
+    use_backend(request.param[0])
     return request.param
 
 
@@ -68,6 +95,26 @@ def random_block():
         return position.astype(np.float32), velocity.astype(np.float32)
 
     return make
+
+
+@pytest.fixture
+def fontana(tmp_path: Path):
+    """Runs the command line in a folder of its own and returns the finished process."""
+
+    def call(*arguments: object, code: int = 0, env: dict | None = None, **options) -> subprocess.CompletedProcess:
+        done = subprocess.run(
+            fontana_command(*arguments),
+            cwd=tmp_path,
+            env=os.environ | {"FONTANA_DEBUG": ""} | (env or {}),
+            capture_output=True,
+            text=True,
+            **options,
+        )
+        assert done.returncode == code, f"code {done.returncode}\n{done.stdout}\n{done.stderr}"
+        assert "Traceback" not in done.stderr or (env or {}).get("FONTANA_DEBUG")
+        return done
+
+    return call
 
 
 @pytest.fixture(scope="session")

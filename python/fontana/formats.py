@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fontana import _core
+from fontana import _core, bgeo
 
 FORMATS = ("bgeo", "npz", "ply")
 BYTES_PER_PARTICLE = {"bgeo": 48, "npz": 44, "ply": 44}
@@ -38,18 +38,21 @@ def write_frame(simulation: _core.Simulation, path: Path, format: str) -> tuple[
 
 def particle_radius(simulation: _core.Simulation) -> float:
     """Half the distance of particles at rest, which is half the support radius; in the scene's unit, as positions."""
-    return 0.25 * simulation.derived().support_radius / simulation.get("time.simulation_scale")
+    return simulation.derived().particle_radius
 
 
 def read_frame(path: str | Path) -> dict[str, np.ndarray]:
     """The attributes of a frame's file by name: (N,) or (N, 3) arrays. Raises IoError."""
     path = Path(path)
-    readers = {".bgeo": _read_bgeo, ".npz": _read_npz, ".ply": _read_ply}
-    if path.suffix not in readers:
-        raise _core.BadInput(f'"{path}": expected a file that ends in {", ".join(readers)}')
-    data = read_bytes(path)
+    if path.suffix not in _READERS:
+        raise _core.BadInput(f'"{path}": expected a file that ends in {", ".join(_READERS)}')
+    return decode_frame(read_bytes(path), path)
+
+
+def decode_frame(data: bytes, path: Path) -> dict[str, np.ndarray]:
+    """The attributes in the content of the file `path`, as `read_frame` returns them. Raises IoError."""
     try:
-        return readers[path.suffix](data)
+        return _READERS[path.suffix](data)
     except Exception as error:  # three parsers, each with its own kinds
         raise _core.IoError(f'cannot read "{path}": it is damaged, or not a frame that Fontana wrote') from error
 
@@ -100,26 +103,8 @@ def _read_ply(data: bytes) -> dict[str, np.ndarray]:
 
 
 def _read_bgeo(data: bytes) -> dict[str, np.ndarray]:
-    """Reads points and their attributes from Houdini's classic binary geometry, which no PyPI package reads."""
-    magic, version = data[:5], int.from_bytes(data[5:9], "big")
-    if magic != b"BgeoV" or version != 5:
-        raise ValueError("not a .bgeo of version 5")
-    point_count, _, _, _, attribute_count = np.frombuffer(data, ">i4", 5, 9)
-    offset = 9 + 8 * 4
-    columns = [("P", ">f4", (3,)), ("w", ">f4")]
-    for _ in range(attribute_count):
-        length = int.from_bytes(data[offset : offset + 2], "big")
-        name = data[offset + 2 : offset + 2 + length].decode("ascii")
-        offset += 2 + length
-        components = int.from_bytes(data[offset : offset + 2], "big")
-        kind = int.from_bytes(data[offset + 2 : offset + 6], "big")
-        offset += 6 + 4 * components
-        dtype = {0: ">f4", 1: ">i4", 5: ">f4"}[kind]
-        columns.append((name, dtype, (components,)) if components > 1 else (name, dtype))
-    points = np.frombuffer(data, np.dtype(columns), point_count, offset)
-    names = [name for name in points.dtype.names if name != "w"]
-    return {_HOUDINI_NAMES.get(name, name): _native(points[name]) for name in names}
+    attributes, _ = bgeo.read(data)
+    return {_HOUDINI_NAMES.get(name, name): values for name, values in attributes.items()}
 
 
-def _native(array: np.ndarray) -> np.ndarray:
-    return array.astype(array.dtype.newbyteorder("="))
+_READERS = {".bgeo": _read_bgeo, ".npz": _read_npz, ".ply": _read_ply}

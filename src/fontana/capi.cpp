@@ -19,6 +19,7 @@
 struct fontana_simulation {
     fontana::Simulation simulation;
     std::string text;  // the last string given out
+    std::vector<std::byte> state;
     std::vector<fontana::ProfileRow> profile;
     std::vector<fontana_kernel_profile> profile_view;
 };
@@ -72,6 +73,17 @@ fontana::Simulation& simulation_of(fontana_simulation* handle) {
 fontana_device view_of(const fontana::DeviceInfo& device) {
     return {device.backend.c_str(), device.name.c_str(),   device.driver.c_str(),    device.memory_bytes,
             device.compute_units,   device.is_gpu ? 1 : 0, device.available ? 1 : 0, device.reason.c_str()};
+}
+
+fontana_kernel_profile view_of(const fontana::ProfileRow& row) {
+    const fontana::KernelFacts* facts = fontana::find_kernel_facts(row.name);
+    const auto elements = static_cast<double>(row.elements);
+    return {row.name.c_str(),
+            row.launches,
+            row.seconds,
+            row.elements,
+            facts ? elements * facts->bytes_per_particle : 0.0,
+            facts ? elements * facts->flops_per_particle : 0.0};
 }
 
 // A device function times the constant that the solver takes out of the sum.
@@ -349,10 +361,16 @@ fontana_status fontana_read_profile(fontana_simulation* simulation, const fontan
         std::sort(simulation->profile.begin(), simulation->profile.end(),
                   [](const auto& a, const auto& b) { return a.seconds > b.seconds; });
         simulation->profile_view.clear();
-        for (const fontana::ProfileRow& row : simulation->profile)
-            simulation->profile_view.push_back({row.name.c_str(), row.launches, row.seconds});
+        for (const fontana::ProfileRow& row : simulation->profile) simulation->profile_view.push_back(view_of(row));
         *rows = simulation->profile_view.data();
         *count = simulation->profile_view.size();
+    });
+}
+
+fontana_status fontana_measure_copy(fontana_simulation* simulation, size_t bytes, double* bytes_per_second) {
+    return guarded([&] {
+        require(bytes_per_second, "bytes_per_second");
+        *bytes_per_second = simulation_of(simulation).copy_bandwidth(bytes);
     });
 }
 
@@ -374,6 +392,25 @@ fontana_status fontana_load_checkpoint(fontana_simulation* simulation, const cha
     return guarded([&] {
         require(path, "path");
         simulation_of(simulation).load_checkpoint(path);
+    });
+}
+
+fontana_status fontana_save_state(fontana_simulation* simulation, const void** data, size_t* bytes) {
+    return guarded([&] {
+        require(data, "data");
+        require(bytes, "bytes");
+        fontana::Simulation& s = simulation_of(simulation);
+        simulation->state.clear();
+        s.save_state(simulation->state);
+        *data = simulation->state.data();
+        *bytes = simulation->state.size();
+    });
+}
+
+fontana_status fontana_load_state(fontana_simulation* simulation, const void* data, size_t bytes) {
+    return guarded([&] {
+        if (bytes) require(data, "data");
+        simulation_of(simulation).load_state(data, bytes);
     });
 }
 

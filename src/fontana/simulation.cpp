@@ -123,13 +123,15 @@ void Simulation::set_force(std::size_t count, const float* force) {
 }
 
 Solver& Simulation::solver() {
+    const bool tiles = parameters.solver_neighbors == "tiles";
     const std::string key = parameters.solver_backend + " " + parameters.solver_precision + " " +
                             std::to_string(parameters.solver_threads) + " " + std::to_string(parameters.solver_device) +
-                            " " + std::to_string(parameters.solver_profile);
+                            " " + std::to_string(parameters.solver_profile) + " " + std::to_string(tiles);
     if (solver_ && key == solver_key_) return *solver_;
     BackendOptions options;
     options.strict = parameters.solver_precision == "strict";
     options.profile = parameters.solver_profile;
+    options.tiles = tiles;
     options.threads = parameters.solver_threads;
     options.device = parameters.solver_device;
     auto moved = std::make_unique<Solver>(make_backend(parameters.solver_backend, options));
@@ -144,6 +146,9 @@ Solver& Simulation::solver() {
 
 void Simulation::check() const {
     check_time_step(parameters);
+    if (parameters.solver_neighbors == "tiles" && parameters.fluid_method != "mueller")
+        fail(FONTANA_BAD_INPUT, "solver.neighbors=tiles is a choice of fluid.method=mueller, and the method is " +
+                                    parameters.fluid_method + ": use solver.neighbors=grid");
     for (const Emitter& emitter : emitters_) emitter.check(scene_spacing());
 }
 
@@ -315,7 +320,7 @@ void Simulation::read_attribute(const std::string& name, void* out, std::size_t 
 
 void Simulation::write_bgeo(const std::string& path) {
     const std::size_t count = particle_count();
-    const double radius = 0.5 * sampling_distance(parameters) / parameters.time_simulation_scale;  // pscale is a radius
+    const double radius = derive(parameters).particle_radius;  // pscale is a radius
     std::vector<float> position(3 * count), velocity(3 * count), density(count), pressure(count), mass(count);
     std::vector<float> pscale(count, static_cast<float>(radius));
     std::vector<std::int32_t> id(count);

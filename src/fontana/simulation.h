@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "backends/backend.h"
+#include "backends/copy_bandwidth.h"
 #include "fontana.h"
+#include "io/checkpoint.h"
 #include "scene/collider.h"
 #include "scene/emitter.h"
 #include "scene/parameters.h"
@@ -61,10 +63,14 @@ class Simulation {
 
     void save_checkpoint(const std::string& path, const std::string& tag);
     void load_checkpoint(const std::string& path);
+    // The same in memory; appends to `out`.
+    void save_state(std::vector<std::byte>& out);
+    void load_state(const void* data, std::size_t bytes);
 
     void check() const;
     const DeviceInfo& device() { return solver().backend().device(); }
     std::vector<ProfileRow> profile() { return solver().backend().profile(); }
+    double copy_bandwidth(std::size_t bytes) { return measure_copy_bandwidth(solver().backend(), bytes); }
     std::uint64_t memory_for(std::uint64_t particle_count) const;
 
  private:
@@ -80,6 +86,9 @@ class Simulation {
     void account_for(const SubstepReport& report);
     fontana_frame_report finish_frame(double seconds);
     double scene_spacing() const;  // in units of the scene
+    template <typename Use>
+    void with_sections(CheckpointWriter& writer, const Use& use);
+    void restore(const Checkpoint& checkpoint);
 
     std::vector<Collider> colliders_;
     std::vector<Emitter> emitters_;

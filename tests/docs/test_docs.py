@@ -13,6 +13,7 @@ import pytest
 import fontana
 from fontana.cli import exit_codes
 from fontana.tables import COLLIDERS, EMITTERS, KEY_FIELDS, VIEW_FIELDS
+from fontana.validate import case_names
 
 ROOT = Path(__file__).parents[2]
 SOURCE = ROOT / "src" / "fontana"
@@ -104,12 +105,24 @@ def test_tests_that_are_named_exist(path):
         assert f"def {name}(" in sources, f"{path.name}: there is no {name}"
 
 
+def tool(name: str):
+    """A script of tools/ as a module."""
+    specification = importlib.util.spec_from_file_location(name, ROOT / "tools" / f"{name}.py")
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module
+
+
 def test_parameters_page_is_up_to_date():
-    place = ROOT / "tools" / "make_parameter_docs.py"
-    specification = importlib.util.spec_from_file_location("make_parameter_docs", place)
-    tool = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(tool)
-    assert page("parameters.md") == tool.page(), "run: python tools/make_parameter_docs.py"
+    assert page("parameters.md") == tool("make_parameter_docs").page(), "run: python tools/make_parameter_docs.py"
+
+
+def test_validation_page_is_up_to_date():
+    """It says what benchmarks/results/validate holds, of every case."""
+    maker = tool("make_validation_docs")
+    results = maker.load()
+    assert [result["case"] for result in results] == case_names()
+    assert page("validation-results.md") == maker.page(results), "run: python tools/make_validation_docs.py"
 
 
 def test_parameters_that_are_named_exist():

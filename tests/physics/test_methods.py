@@ -58,7 +58,7 @@ def test_fast_arithmetic_agrees_over_one_substep(backend, make_simulation, rando
             fluid__kernel=kernel,
             time__timestep=5e-4,
             solver__quality="custom",
-            solver__density_error=1e-3,
+            solver__density_error=1e-4,  # so tight that what the solves leave is not what is compared
         )
         position, velocity = random_block(6, SPACING)  # a jittered cube that has just landed beside the water
         simulation.add_particles(position * np.float32(0.8) + np.array([0.6, 0.0, 0.0], np.float32), velocity)
@@ -85,6 +85,7 @@ def test_methods_agree_on_a_dam_break(make_simulation):
     runs = {}
     for name, parameters in {
         "dfsph": {},
+        "dfsph anderson": {"fluid__method": "dfsph", "solver__pressure_solver": "anderson"},
         "dfsph jacobi": {"fluid__method": "dfsph", "solver__pressure_solver": "jacobi"},
         "pcisph": {},
         "wcsph": {"fluid__pressure_constant": 4000.0},
@@ -113,12 +114,14 @@ def test_the_density_error_is_the_quality(make_simulation, method):
     assert list(errors.values()) == sorted(errors.values(), reverse=True)
 
 
-def test_anderson_needs_fewer_iterations_than_jacobi(make_simulation):
+def test_better_solvers_need_fewer_iterations(make_simulation):
     iterations = {}
-    for solver in ("anderson", "jacobi"):
-        simulation = pool(make_simulation, "dfsph", solver__pressure_solver=solver, solver__quality="final")
-        iterations[solver] = sum(simulation.step_frame().iterations for _ in range(6))
+    for solver in ("multilevel", "anderson", "jacobi"):
+        settings = {"solver__pressure_solver": solver, "solver__quality": "final", "time__timestep": 0.003}
+        simulation = pool(make_simulation, "dfsph", **settings)
+        iterations[solver] = sum(simulation.step_frame().iterations for _ in range(60))
     assert iterations["anderson"] < 0.6 * iterations["jacobi"]
+    assert iterations["multilevel"] < 0.85 * iterations["anderson"]
 
 
 def test_a_pool_stays_at_rest_and_knows_its_depth(backend, make_simulation):
@@ -126,9 +129,10 @@ def test_a_pool_stays_at_rest_and_knows_its_depth(backend, make_simulation):
     simulation = pool(make_simulation, "dfsph", backend)
     reports = [simulation.step_frame() for _ in range(24)]
     pressure = np.zeros(simulation.particle_count)
-    for _ in range(24):  # it fluctuates from step to step; the weight it carries is its mean
+    simulation.set("time.timestep", 0.005)  # a substep a frame
+    for _ in range(200):  # it fluctuates from step to step; the weight it carries is its mean
         reports.append(simulation.step_frame())
-        pressure += simulation.read("pressure") / 24
+        pressure += simulation.read("pressure") / 200
     report, position = reports[-1], simulation.read("position")
     assert np.all(position >= -1e-6) and np.all(position[:, [0, 2]] <= 0.5 + 1e-6)
     mass = simulation.read("mass").sum()
@@ -137,8 +141,7 @@ def test_a_pool_stays_at_rest_and_knows_its_depth(backend, make_simulation):
     assert report.centre_of_mass[1] == pytest.approx(0.25, rel=0.02)
     expected = 1000.0 * 9.81 * (0.5 - position[:, 1])
     inner = np.all(np.abs(position[:, [0, 2]] - 0.25) < 0.15, axis=1) & (position[:, 1] < 0.4)
-    # Ten particles deep and 24 samples of a fluctuating quantity: a tenth is what can be asked for.
-    assert pressure[inner].mean() == pytest.approx(expected[inner].mean(), rel=0.1)
+    assert pressure[inner].mean() == pytest.approx(expected[inner].mean(), rel=0.05)
 
 
 def test_a_solve_that_gives_up_says_so(make_simulation):

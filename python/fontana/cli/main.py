@@ -12,9 +12,11 @@ import click
 from fontana import _core
 from fontana.cli import exit_codes
 from fontana.cli.bench import bench
+from fontana.cli.files import export, mesh
 from fontana.cli.information import devices, explain, fluids, scenes, schema
 from fontana.cli.render import render
 from fontana.cli.run import resume, run
+from fontana.cli.validate import validate
 from fontana.cli.verify import verify
 from fontana.cli.view import view
 
@@ -38,7 +40,9 @@ def cli() -> None:
     pass
 
 
-for command in (run, resume, render, view, devices, verify, bench, scenes, schema, explain, fluids):
+for command in (
+    run, resume, view, render, mesh, export, devices, verify, validate, bench, scenes, schema, explain, fluids
+):  # fmt: skip
     cli.add_command(command)
 
 

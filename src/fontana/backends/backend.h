@@ -2,6 +2,7 @@
 // free of vendor words. A backend fills in a dozen virtual functions and a line in registry.cpp.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -10,6 +11,8 @@
 #include <string>
 #include <type_traits>
 #include <vector>
+
+#include "kernels/step_constants.h"
 
 namespace fontana {
 
@@ -25,6 +28,8 @@ struct KernelFacts {
     double bytes_per_particle, flops_per_particle;
 };
 const KernelFacts& kernel_facts(Kernel kernel);
+// By the name of a launch; null for what is not in kernel_list.def, such as a backend's sort.
+const KernelFacts* find_kernel_facts(const std::string& name);
 
 struct DeviceInfo {
     std::string backend, name, driver;
@@ -74,15 +79,29 @@ class KernelArgument {
 
 using KernelArguments = std::initializer_list<KernelArgument>;
 
+// What a launch goes through, which is not its thread count where a thread takes several: every kernel's first argument
+// says it, as a count or in the step's constants.
+inline std::uint64_t element_count(KernelArguments arguments) {
+    if (arguments.size() == 0) return 0;
+    const KernelArgument& first = *arguments.begin();
+    if (first.value_bytes() == sizeof(StepConstants))
+        return static_cast<const StepConstants*>(first.value())->particle_count;
+    std::uint32_t count = 0;
+    std::memcpy(&count, first.value(), std::min(sizeof count, first.value_bytes()));
+    return count;
+}
+
 struct ProfileRow {
     std::string name;
     std::uint64_t launches = 0;
+    std::uint64_t elements = 0;  // particles, or values of a sort, summed over the launches
     double seconds = 0.0;
 };
 
 struct BackendOptions {
     bool strict = false;   // no contracted or reassociated arithmetic
     bool profile = false;  // time every launch
+    bool tiles = false;    // cuda, opencl: candidates through local memory (backends/gpu/tiles.inl)
     int threads = 0;       // cpu: 0 is one per core
     int device = 0;        // index within the backend
 };
@@ -116,7 +135,7 @@ class Backend {
 
 // Every device of every backend, and a line for each backend that has none, with the reason.
 std::vector<DeviceInfo> list_devices();
-// name: "auto", "cpu", "opencl".
+// name: "auto", "cpu", "cuda", "opencl".
 std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options);
 
 }  // namespace fontana

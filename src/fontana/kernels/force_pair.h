@@ -22,8 +22,9 @@ FN ForceSum zero_force(void) {
 FN ForceSum add_force(ForceSum sum, const StepConstants c, float4 x_i, float4 v_i, REAL4 x_j, REAL4 v_j) {
     const REAL dx = x_i.x - x_j.x, dy = x_i.y - x_j.y, dz = x_i.z - x_j.z;
     // The floor makes x_ij / r zero, not NaN, for the particle itself and for coincident ones.
-    const REAL r = SQRT(max_f(dx * dx + dy * dy + dz * dz, 1.0e-24f));
-    const REAL p = x_j.w * (v_i.w + v_j.w) * spiky_gradient(r, c.support_radius) / r;
+    const REAL r_squared = max_f(dx * dx + dy * dy + dz * dz, 1.0e-24f);
+    const REAL inverse_r = INVERSE_SQRT(r_squared), r = r_squared * inverse_r;
+    const REAL p = x_j.w * (v_i.w + v_j.w) * spiky_gradient(r, c.support_radius) * inverse_r;
     sum.pressure_x += p * dx;
     sum.pressure_y += p * dy;
     sum.pressure_z += p * dz;

@@ -12,7 +12,10 @@
 #include "pair.h"
 #include "walls.h"
 
-// What spline_density ends with: the sums over neighbours become its three results.
+// G^T a from its sum over neighbours; s: S_i.
+FN float divergence_of(float4 s, float4 a, float sum) { return s.x * a.x + s.y * a.y + s.z * a.z - sum; }
+
+// The sums over neighbours become density and factor.
 FN void store_density(const StepConstants c, uint i, float volume, float relative, Real3 s, float squares,
                       WallTerm walls, GLOBAL float* RESTRICT density_out, GLOBAL float4* RESTRICT factor,
                       GLOBAL float* RESTRICT wall_rate) {
@@ -27,27 +30,42 @@ FN void store_density(const StepConstants c, uint i, float volume, float relativ
     wall_rate[i] = walls.rate;
 }
 
-// Density; `volume_position` = x, y, z, V; `factor` = S, 1 / D (0 where a particle feels no pressure); `wall_rate`.
-KERNEL void spline_density(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
-                           GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
-                           GLOBAL const float4* RESTRICT volume_position,
-                           GLOBAL const ColliderConstants* RESTRICT collider, GLOBAL float* RESTRICT density_out,
-                           GLOBAL float4* RESTRICT factor, GLOBAL float* RESTRICT wall_rate) {
+// Viscosity as Monaghan (2005) writes the Laplacian, 2 (dimension + 2) = 10:
+//   a_i = 10 nu sum_j V_j (v_ij . x_ij) / (r^2 + 0.01 H^2) grad W_ij.
+FN void store_viscosity(const StepConstants c, uint i, Real3 sum, GLOBAL float4* RESTRICT viscous) {
+    const float scale = 10.0f * c.viscosity * c.inverse_rest_density;
+    viscous[i] = MAKE_FLOAT4(scale * sum.x, scale * sum.y, scale * sum.z, 0.0f);
+}
+
+// All that a substep has to know before pressure acts, in one visit to every neighbour. `volume_position` = x, y, z, V.
+// Out: the density; `factor` = S, 1 / D (0 where a particle feels no pressure); `wall_rate`; `rate`, that of the
+// relative density under the present velocities (1/s); and the acceleration by viscosity.
+KERNEL void sum_neighborhood(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
+                             GLOBAL const float4* RESTRICT velocity, GLOBAL const uint* RESTRICT neighbor_count,
+                             GLOBAL const uint* RESTRICT list, GLOBAL const float4* RESTRICT volume_position,
+                             GLOBAL const ColliderConstants* RESTRICT collider, GLOBAL float* RESTRICT density_out,
+                             GLOBAL float4* RESTRICT factor, GLOBAL float* RESTRICT wall_rate,
+                             GLOBAL float* RESTRICT rate, GLOBAL float4* RESTRICT viscous) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
-    const float4 x_i = volume_position[i];
+    const float4 x_i = volume_position[i], v_i = velocity[i];
     const WallTerm walls = walls_at(c, collider, position[i]);
-    float relative = x_i.w * kernel_value(c, 0.0f) + walls.share, squares = 0.0f;
-    Real3 s = zero_vector();
+    float relative = x_i.w * kernel_value(c, 0.0f) + walls.share, squares = 0.0f, approach = 0.0f;
+    Real3 s = zero_vector(), shear = zero_vector();
     const uint count = list_length(c, neighbor_count[i]);
     for (uint k = 0u; k < count; ++k) {
-        const float4 x_j = volume_position[neighbor(c, list, i, k)];
+        const uint j = neighbor(c, list, i, k);
+        const float4 x_j = volume_position[j], v_j = velocity[j];
         const Pair pair = pair_of(x_i, x_j);
         relative += x_j.w * kernel_value(c, pair.r);
         s = add_gradient(s, c, x_j.w, pair);
         squares += gradient_squared_term(c, x_j.w, pair);
+        approach += divergence_term(c, x_j.w, pair, v_j);
+        shear = add_gradient(shear, c, viscosity_weight(c, x_j.w, pair, v_i, v_j), pair);
     }
     store_density(c, i, x_i.w, relative, s, squares, walls, density_out, factor, wall_rate);
+    rate[i] = divergence_of(factor[i], v_i, approach) - walls.rate;
+    store_viscosity(c, i, shear, viscous);
 }
 
 KERNEL void pack_volume(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
@@ -62,15 +80,15 @@ KERNEL void pack_volume(THREAD_ARG const StepConstants c, GLOBAL const float4* R
 FN float divergence_at(const StepConstants c, uint i, GLOBAL const uint* RESTRICT neighbor_count,
                        GLOBAL const uint* RESTRICT list, GLOBAL const float4* RESTRICT volume_position,
                        GLOBAL const float4* RESTRICT factor, GLOBAL const float4* RESTRICT field) {
-    const float4 x_i = volume_position[i], s = factor[i], a_i = field[i];
-    float sum = s.x * a_i.x + s.y * a_i.y + s.z * a_i.z;
+    const float4 x_i = volume_position[i];
+    float sum = 0.0f;
     const uint count = list_length(c, neighbor_count[i]);
     for (uint k = 0u; k < count; ++k) {
         const uint j = neighbor(c, list, i, k);
         const float4 x_j = volume_position[j];
-        sum -= divergence_term(c, x_j.w, pair_of(x_i, x_j), field[j]);
+        sum += divergence_term(c, x_j.w, pair_of(x_i, x_j), field[j]);
     }
-    return sum;
+    return divergence_of(factor[i], field[i], sum);
 }
 
 // Rate of the relative density under the velocities, 1/s: what the solves start from.
@@ -112,30 +130,6 @@ KERNEL void push_by_pressure(THREAD_ARG const StepConstants c, GLOBAL const floa
     if (i >= c.particle_count) return;
     const float4 g = gradient[i], v = velocity[i];
     velocity[i] = MAKE_FLOAT4(v.x - c.dt * g.x, v.y - c.dt * g.y, v.z - c.dt * g.z, v.w);
-}
-
-FN void store_viscosity(const StepConstants c, uint i, Real3 sum, GLOBAL float4* RESTRICT acceleration) {
-    const float scale = 10.0f * c.viscosity * c.inverse_rest_density;
-    acceleration[i] = MAKE_FLOAT4(scale * sum.x, scale * sum.y, scale * sum.z, 0.0f);
-}
-
-// Viscosity as Monaghan (2005) writes the Laplacian, 2 (dimension + 2) = 10:
-//   a_i = 10 nu sum_j V_j (v_ij . x_ij) / (r^2 + 0.01 H^2) grad W_ij. Starts the acceleration.
-KERNEL void laplacian_viscosity(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT velocity,
-                                GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
-                                GLOBAL const float4* RESTRICT volume_position, GLOBAL float4* RESTRICT acceleration) {
-    const uint i = THREAD_INDEX;
-    if (i >= c.particle_count) return;
-    const float4 x_i = volume_position[i], v_i = velocity[i];
-    Real3 sum = zero_vector();
-    const uint count = list_length(c, neighbor_count[i]);
-    for (uint k = 0u; k < count; ++k) {
-        const uint j = neighbor(c, list, i, k);
-        const float4 x_j = volume_position[j];
-        const Pair pair = pair_of(x_i, x_j);
-        sum = add_gradient(sum, c, viscosity_weight(c, x_j.w, pair, v_i, velocity[j]), pair);
-    }
-    store_viscosity(c, i, sum, acceleration);
 }
 
 // v += dt a and the drag factor: the prediction that the pressure corrects.

@@ -8,6 +8,7 @@
 typedef struct Pair {
     REAL dx, dy, dz;  // x_ij, m
     REAL r;           // m
+    REAL inverse_r;   // 1/m
 } Pair;
 
 typedef struct Real3 {
@@ -20,18 +21,21 @@ FN Real3 zero_vector(void) {
     return zero;
 }
 
+// The floor makes x_ij / r zero, not NaN, for the particle itself and for coincident ones.
 FN Pair pair_of(float4 x_i, REAL4 x_j) {
     Pair pair;
     pair.dx = x_i.x - x_j.x;
     pair.dy = x_i.y - x_j.y;
     pair.dz = x_i.z - x_j.z;
-    pair.r = SQRT(pair.dx * pair.dx + pair.dy * pair.dy + pair.dz * pair.dz);
+    const REAL r_squared = max_f(pair.dx * pair.dx + pair.dy * pair.dy + pair.dz * pair.dz, 1.0e-24f);
+    pair.inverse_r = INVERSE_SQRT(r_squared);
+    pair.r = r_squared * pair.inverse_r;
     return pair;
 }
 
 // sum + weight grad W_ij
 FN Real3 add_gradient(Real3 sum, const StepConstants c, REAL weight, Pair pair) {
-    const REAL g = weight * kernel_gradient(c, pair.r);
+    const REAL g = weight * kernel_gradient(c, pair.r, pair.inverse_r);
     sum.x += g * pair.dx;
     sum.y += g * pair.dy;
     sum.z += g * pair.dz;
@@ -40,12 +44,12 @@ FN Real3 add_gradient(Real3 sum, const StepConstants c, REAL weight, Pair pair) 
 
 // V_j grad W_ij . a_j
 FN REAL divergence_term(const StepConstants c, REAL volume, Pair pair, REAL4 a_j) {
-    return volume * kernel_gradient(c, pair.r) * (pair.dx * a_j.x + pair.dy * a_j.y + pair.dz * a_j.z);
+    return volume * kernel_gradient(c, pair.r, pair.inverse_r) * (pair.dx * a_j.x + pair.dy * a_j.y + pair.dz * a_j.z);
 }
 
 // V_j |grad W_ij|^2
 FN REAL gradient_squared_term(const StepConstants c, REAL volume, Pair pair) {
-    const REAL g = kernel_gradient(c, pair.r) * pair.r;
+    const REAL g = kernel_gradient(c, pair.r, pair.inverse_r) * pair.r;
     return volume * g * g;
 }
 

@@ -15,13 +15,13 @@ FN REAL kernel_value(const StepConstants c, REAL r) {
     return c.kernel_scale * (2.0f * a * a * a - 8.0f * b * b * b);
 }
 
-// The factor on x_ij of grad W: W'(r) / r. The floor on r makes it finite for coincident particles.
-FN REAL kernel_gradient(const StepConstants c, REAL r) {
+// The factor on x_ij of grad W: W'(r) / r.
+FN REAL kernel_gradient(const StepConstants c, REAL r, REAL inverse_r) {
     const REAL q = r * c.inverse_support_radius, a = max_f(1.0f - q, 0.0f);
-    const float scale = c.kernel_scale * c.inverse_support_radius * c.inverse_support_radius;
-    if (c.use_wendland) return -20.0f * scale * a * a * a;
+    const float scale = c.kernel_scale * c.inverse_support_radius;
+    if (c.use_wendland) return (-20.0f * scale * c.inverse_support_radius) * (a * a * a);
     const REAL b = max_f(0.5f - q, 0.0f);
-    return -scale * (6.0f * a * a - 24.0f * b * b) / max_f(q, 1.0e-6f);
+    return scale * (24.0f * b * b - 6.0f * a * a) * inverse_r;
 }
 
 // W seen from a plane: the integral of W over the plane at distance z H, times H; its derivative by z; and the integral

@@ -3,9 +3,10 @@
 // no boundary particles, no bumps, no neighbours. Spheres and cylinders are taken as their tangent plane, which is
 // exact as the radius grows over the support radius.
 //
-// Nearer than half a spacing the distance counts double, so that a particle that reaches the surface meets the first
-// layer face to face. Otherwise it could sit there, held by the collision alone, of which the pressure solve knows
-// nothing.
+// Nearer than half a spacing the distance shrinks faster than it is, so that a particle that reaches the surface meets
+// the first layer face to face. Otherwise it could sit there, held by the collision alone, of which the pressure solve
+// knows nothing. It does so without a kink: the solve is linear in a step, and particles that rest where the slope
+// jumps would be thrown to and fro.
 #ifndef FONTANA_WALLS_H
 #define FONTANA_WALLS_H
 
@@ -20,11 +21,19 @@ typedef struct WallTerm {
     float rate;
 } WallTerm;
 
-// How far from the surface the layers think a particle at `distance` (m, outside the wall) is.
-FN float squeezed_distance(const StepConstants c, float distance) {
-    const float near = distance - 0.25f * c.support_radius;
-    return near < 0.0f ? distance + near : distance;
+// How much nearer than half a spacing, in support radii: 0 to 1/4.
+FN float nearness(const StepConstants c, float distance) {
+    return max_f(0.0f, 0.25f - distance * c.inverse_support_radius);
 }
+
+// How far from the surface the layers think a particle at `distance` (m, outside the wall) is: -H / 4 at the surface.
+FN float squeezed_distance(const StepConstants c, float distance) {
+    const float near = nearness(c, distance);
+    return distance - 4.0f * near * near * c.support_radius;
+}
+
+// The derivative of that.
+FN float squeeze(const StepConstants c, float distance) { return 1.0f + 8.0f * nearness(c, distance); }
 
 // Layers of the spacing H / 2 that a particle at `distance` sees; and the derivative by it. Within the wall the share
 // is that at the surface: there the collision pushes, and a slope would throw what lies on a rim.
@@ -46,7 +55,7 @@ FN float wall_slope(const StepConstants c, float distance, float thickness) {
         const float depth = ((float)k + 0.5f) * spacing;
         if (depth < thickness) slope += 0.5f * plane_slope(c, max_f((z + depth) * c.inverse_support_radius, 0.0f));
     }
-    return slope * c.inverse_support_radius * (distance < 0.5f * spacing ? 2.0f : 1.0f);
+    return slope * c.inverse_support_radius * squeeze(c, distance);
 }
 
 // The share of a cylinder's wall that stands at a height of `above` (m) over its rim: 1 far below, 0 far above.

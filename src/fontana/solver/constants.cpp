@@ -108,7 +108,8 @@ double pcisph_delta(const Parameters& p) {
     const double volume = particle_mass(p) / p.fluid_rest_density;
     double squares = 0.0;  // on a lattice the gradients themselves add up to nothing
     for_lattice(spacing, support, [&](double r) {
-        const double gradient = r * static_cast<double>(kernel_gradient(c, static_cast<float>(r)));
+        const double gradient =
+            r * static_cast<double>(kernel_gradient(c, static_cast<float>(r), static_cast<float>(1.0 / r)));
         squares += volume * std::pow(spacing, 3) * gradient * gradient;
     });
     return 0.5 / squares;
@@ -125,6 +126,7 @@ fontana_derived derive(const Parameters& p) {
     const double own_value =
         uses_spline(p) ? spline_scale(p, support) : smoothing_scales(support).poly6 * std::pow(support, 6);
     derived.self_density = derived.particle_mass * own_value;
+    derived.particle_radius = 0.5 * sampling_distance(p) / p.time_simulation_scale;
     return derived;
 }
 
@@ -156,7 +158,7 @@ StepConstants make_constants(const Parameters& p) {
     if (p.forces_push_radius > 0.0) set_push(p, c);
     c.drag = static_cast<float>(p.forces_drag);
     c.inverse_cell_size = 1.0f / c.support_radius;
-    c.use_grid = p.solver_neighbors == "grid" ? 1u : 0u;
+    c.use_grid = p.solver_neighbors == "all-pairs" ? 0u : 1u;
     return c;
 }
 

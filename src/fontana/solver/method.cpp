@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/coarse_correction.h"
 #include "solver/diagnostics.h"
 #include "solver/methods.h"
 #include "solver/operators.h"
@@ -77,8 +78,9 @@ std::unique_ptr<Method> make_method(const std::string& name, Backend& backend) {
 
 std::uint64_t method_bytes(const std::string& name, std::uint64_t particle_count) {
     if (name == "mueller") return 0;
-    const std::uint64_t solve = name == "dfsph" ? 8 * 4 : name == "pcisph" ? 16 + 4 : 0;
-    return Operators::bytes(particle_count) + solve * (particle_count + particle_count / 4);
+    const std::uint64_t solve = name == "dfsph" ? 7 * 4 : name == "pcisph" ? 16 + 4 : 0;
+    const std::uint64_t coarse = name == "dfsph" ? CoarseCorrection::bytes(particle_count) : 0;
+    return Operators::bytes(particle_count) + solve * (particle_count + particle_count / 4) + coarse;
 }
 
 }  // namespace fontana

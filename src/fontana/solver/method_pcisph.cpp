@@ -20,6 +20,7 @@ class Pcisph : public Method {
     void advance(Substep& s) override {
         operators_.begin(s);
         s.choose_time_step();
+        operators_.add_forces(s);
         operators_.predict(s);
         s.place_colliders();
         reserve(s.particles.count());

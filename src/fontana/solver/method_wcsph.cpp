@@ -13,6 +13,7 @@ class Wcsph : public Method {
     void advance(Substep& s) override {
         operators_.begin(s);
         s.choose_time_step();
+        operators_.add_forces(s);
         operators_.predict(s);
         s.backend.launch(Kernel::tait_pressure, s.particles.count(),
                          {s.constants, s.particles.density(), operators_.u()});

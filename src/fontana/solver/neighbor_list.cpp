@@ -9,7 +9,7 @@ namespace fontana {
 namespace {
 
 constexpr std::uint32_t k_usual_capacity = 48;
-constexpr std::uint32_t k_padding = 8;  // the widest vector a processor's loops use
+constexpr std::uint32_t k_padding = 16;  // the widest vector a processor's loops use
 // Indices into the lists are 32-bit.
 constexpr std::uint64_t k_most_entries = 0xffffffffu;
 

@@ -24,9 +24,10 @@ void Operators::begin(Substep& s) {
     list_.build(s.particles, s.neighborhood, s.constants);
     s.place_walls();
     backend_.launch(Kernel::pack_volume, count, {s.constants, s.particles.position(), *volume_position_});
-    backend_.launch(Kernel::spline_density, count,
-                    {s.constants, s.particles.position(), list_.count(), list_.list(), *volume_position_,
-                     s.colliders.buffer(), s.particles.density(), *factor_, *wall_rate_});
+    backend_.launch(
+        Kernel::sum_neighborhood, count,
+        {s.constants, s.particles.position(), s.particles.velocity(), list_.count(), list_.list(), *volume_position_,
+         s.colliders.buffer(), s.particles.density(), *factor_, *wall_rate_, *rate_, *gradient_});
 }
 
 void Operators::compute_rate(Substep& s) {
@@ -48,12 +49,13 @@ void Operators::push(Substep& s) {
     backend_.launch(Kernel::push_by_pressure, s.particles.count(), {s.constants, *gradient_, s.particles.velocity()});
 }
 
-void Operators::predict(Substep& s) {
-    backend_.launch(Kernel::laplacian_viscosity, s.particles.count(),
-                    {s.constants, s.particles.velocity(), list_.count(), list_.list(), *volume_position_,
-                     s.particles.acceleration()});
+void Operators::add_forces(Substep& s) {
+    backend_.copy(*gradient_, s.particles.acceleration(), s.particles.count() * 16);
     s.add_surface_tension(*volume_position_);
     s.add_external_force();
+}
+
+void Operators::predict(Substep& s) {
     backend_.launch(Kernel::predict_velocity, s.particles.count(),
                     {s.constants, s.particles.acceleration(), s.particles.velocity()});
 }

@@ -14,8 +14,12 @@ class Operators {
  public:
     explicit Operators(Backend& backend) : backend_(backend), list_(backend) {}
 
-    // Lists, densities, S and D, with the walls where they are at the start of the substep.
+    // Lists, densities, S and D, with the walls where they are at the start of the substep; the rate() of the density
+    // under the velocities as they are, and viscosity.
     void begin(Substep& substep);
+    // The acceleration by viscosity, surface tension and external forces; after choose_time_step, which looks at the
+    // last one, and before gradient() is used, where viscosity waits.
+    void add_forces(Substep& substep);
     // Rate of the relative density under the present velocities into rate(); 1/s.
     void compute_rate(Substep& substep);
     // G u into gradient(); m/s^2.
@@ -24,7 +28,7 @@ class Operators {
     void clear_u(Substep& substep);
     // v -= dt G u.
     void push(Substep& substep);
-    // Viscosity, surface tension and external forces; then v += dt a.
+    // v += dt a.
     void predict(Substep& substep);
     // x += dt v and collisions; the pressure goes to where hosts read it, u to where the next substep finds it.
     void finish(Substep& substep, Buffer& u);

@@ -19,6 +19,13 @@ double quotient(double numerator, double denominator) {
     return denominator > 0.0 ? numerator / denominator : k_infinity;
 }
 
+// s/m: the longest step for a metre of spacing at which the pressure solve still converges in few iterations, and the
+// first contact with a floor does not crush anyone.
+double convergence_rate(const Parameters& p) {
+    if (p.fluid_method == "pcisph") return 0.05;
+    return p.solver_pressure_solver == "multilevel" ? 0.15 : 0.1;
+}
+
 std::string text_of(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3g", value);
@@ -34,7 +41,7 @@ fontana_time_step_limits time_step_limits(const Parameters& p, double speed, dou
     limits.acceleration = factor * 0.25 * std::sqrt(quotient(2.0 * d, acceleration));
     const bool is_stiff = p.fluid_method == "mueller" || p.fluid_method == "wcsph";
     limits.acoustic = is_stiff ? factor * quotient(0.4 * d, std::sqrt(p.fluid_pressure_constant)) : k_infinity;
-    limits.convergence = is_stiff ? k_infinity : factor * (p.fluid_method == "pcisph" ? 0.05 : 0.1) * d;
+    limits.convergence = is_stiff ? k_infinity : factor * convergence_rate(p) * d;
     limits.viscosity = factor * quotient(0.1 * d * d * density, p.fluid_viscosity);
     limits.surface_tension =
         factor * 0.4 * std::sqrt(quotient(density * d * d * d, 2.0 * k_pi * p.fluid_surface_tension));

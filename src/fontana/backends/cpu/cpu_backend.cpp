@@ -34,8 +34,8 @@ class CpuBuffer : public Buffer {
 
  private:
     static constexpr std::align_val_t k_alignment{64};
-    // A loop over vectors of eight particles reads, but does not use, up to seven beyond the last.
-    static constexpr std::size_t k_slack = 8 * sizeof(float4);
+    // A loop over vectors of sixteen particles reads, but does not use, up to fifteen beyond the last.
+    static constexpr std::size_t k_slack = 16 * sizeof(float4);
     char* data_;
 };
 
@@ -50,14 +50,16 @@ KernelTable choose_kernels(bool strict) {
     constexpr auto count = static_cast<std::size_t>(Kernel::count);
     if (strict) return {{strict_kernels(), strict_kernels() + count}, "strict arithmetic"};
 #if defined(__x86_64__)
-    // "baseline" runs what a processor without AVX2 would: for tests, and to tell a compiler's fault from ours.
-    const char* wanted = std::getenv("FONTANA_CPU_INSTRUCTIONS");
-    const bool baseline = wanted && std::string(wanted) == "baseline";
-    if (!baseline && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
-        KernelTable table{{avx2_kernels(), avx2_kernels() + count}, "AVX2"};
-        for (std::size_t k = 0; k < count; ++k)
-            if (const KernelLoop loop = wide_loop(kernel_facts(static_cast<Kernel>(k)).name))
-                table.kernels[k].run = loop;
+    // "baseline" or "avx2" runs what a lesser processor would: for tests, and to tell a compiler's fault from ours.
+    const char* given = std::getenv("FONTANA_CPU_INSTRUCTIONS");
+    const std::string wanted = given ? given : "";
+    if (wanted != "baseline" && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
+        const bool is_wider = wanted != "avx2" && __builtin_cpu_supports("avx512f");
+        KernelTable table{{avx2_kernels(), avx2_kernels() + count}, is_wider ? "AVX-512" : "AVX2"};
+        for (std::size_t k = 0; k < count; ++k) {
+            const char* name = kernel_facts(static_cast<Kernel>(k)).name;
+            if (const KernelLoop loop = is_wider ? avx512_loop(name) : avx2_loop(name)) table.kernels[k].run = loop;
+        }
         return table;
     }
 #endif
@@ -123,7 +125,7 @@ class CpuBackend : public Backend {
         const CpuKernel& code = kernels_[static_cast<std::size_t>(kernel)];
         void* addresses[16];
         collect(kernel, code, arguments, addresses);
-        timed(kernel_facts(kernel).name, [&] {
+        timed(kernel_facts(kernel).name, element_count(arguments), [&] {
             pool_.run(count, k_grain, [&](std::size_t begin, std::size_t end) { code.run(addresses, begin, end); });
         });
     }
@@ -132,7 +134,7 @@ class CpuBackend : public Backend {
         check_range(key, count * 4, 0);
         check_range(order, count * 4, 0);
         check_range(start, (key_count + 1) * 4, 0);
-        timed("sort", [&] {
+        timed("sort", count, [&] {
             sorter_.sort(pool_, reinterpret_cast<const std::uint32_t*>(data_of(key)), count, key_count,
                          reinterpret_cast<std::uint32_t*>(data_of(order)),
                          reinterpret_cast<std::uint32_t*>(data_of(start)));
@@ -172,7 +174,7 @@ class CpuBackend : public Backend {
     }
 
     template <typename Work>
-    void timed(const char* name, const Work& work) {
+    void timed(const char* name, std::uint64_t elements, const Work& work) {
         if (!profile_) {
             work();
             return;
@@ -182,6 +184,7 @@ class CpuBackend : public Backend {
         ProfileRow& row = rows_[name];
         row.name = name;
         ++row.launches;
+        row.elements += elements;
         row.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
 

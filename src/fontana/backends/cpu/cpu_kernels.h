@@ -23,8 +23,9 @@ const CpuKernel* strict_kernels();
 const CpuKernel* baseline_kernels();
 #if defined(__x86_64__)
 const CpuKernel* avx2_kernels();
-// The loop of a kernel over eight neighbours at once (AVX2 and FMA); null if it has none.
-KernelLoop wide_loop(const char* kernel);
+// The loop of a kernel over eight neighbours at once (AVX2 and FMA), or sixteen (AVX-512); null if it has none.
+KernelLoop avx2_loop(const char* kernel);
+KernelLoop avx512_loop(const char* kernel);
 #endif
 
 // How a kernel's argument of type T is had from what the backend collected.

@@ -1,76 +1,134 @@
-// The neighbour loops of the fast arithmetic, eight neighbours at once. Formulas are those of kernels/: pair.h and
-// force_pair.h are included a second time here, with vectors for REAL. Only the loops are this file's own, and each is
-// tested against the plain one.
+// The neighbour loops of the fast arithmetic, a vector of neighbours at once. Formulas are those of kernels/: pair.h
+// and others are included a second time here, with vectors for REAL. Only the loops are this file's own, and each is
+// tested against the plain one. Compiled once for each instruction set; FONTANA_WIDE is its name.
 //
 // Lists of neighbours are padded with the particle itself, which adds nothing to a gradient (x_ii = 0).
 #include "backends/cpu/cpu_kernels.h"
-#include "backends/cpu/wide.h"
+#if defined(__AVX512F__)
+#include "backends/cpu/wide_avx512.h"
+#else
+#include "backends/cpu/wide_avx2.h"
+#endif
 #include "kernels/kernels.h"
 
 namespace fontana {
-namespace wide {
+namespace FONTANA_WIDE {
 
 #undef REAL
 #undef REAL4
 #undef REAL_ZERO
-#undef SQRT
+#undef INVERSE_SQRT
+#undef REAL_FLOOR
 #undef FONTANA_SMOOTHING_H
 #undef FONTANA_FORCE_PAIR_H
 #undef FONTANA_SPLINE_H
 #undef FONTANA_PAIR_H
-#define REAL Vec8
-#define REAL4 Vec8x4
+#undef FONTANA_ANDERSON_H
+#undef FONTANA_COARSE_PAIR_H
+#define REAL Vec
+#define REAL4 Vec4
 #define REAL_ZERO \
-    Vec8 {}
-#define SQRT(a) wide_sqrt(a)
+    Vec {}
+#define INVERSE_SQRT(a) inverse_sqrt(a)
+#define REAL_FLOOR(a) floor_of(a)
+#include "kernels/anderson.h"
+#include "kernels/coarse_pair.h"
 #include "kernels/force_pair.h"
 #include "kernels/pair.h"
 
 // Hits of one particle collected before the forces are computed; flushed when full.
 constexpr uint k_most_hits = 256;
+// Farther than any particle can be from another and still be its neighbour, and its square is finite.
+constexpr float k_far = 1.0e18f;
 
 ::Real3 sum_of(const Real3& v) { return {sum_of(v.x), sum_of(v.y), sum_of(v.z)}; }
 
-// Lanes of a vector that starts at j and are still within the range.
-uint lanes_within(uint j, uint end) { return end - j >= width ? 0xffu : (1u << (end - j)) - 1u; }
+// The candidates for neighbours of all the particles of one cell, in columns: read and turned round once, then tested
+// by each of them from the first-level cache. More than there is room for come in portions.
+class Candidates {
+ public:
+    Candidates(const StepConstants& c, const float4* position, const uint* cell_start)
+        : c_(c), position_(position), cell_start_(cell_start) {}
 
-Vec8 distance_squared(const float4& a, const Vec8x4& b) {
-    const Vec8 dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
-    return dx * dx + dy * dy + dz * dz;
-}
-
-// Calls visit(first index of the vector, mask of hits, neighbours, squared distances) over the candidates of particle
-// i.
-template <typename Visit>
-inline __attribute__((always_inline)) void for_hits(const StepConstants& c, const float4* position,
-                                                    const uint* cell_start, const float4& x_i, const Visit& visit) {
-    const CellCoordinates cell = cell_of(c, x_i);
-    const uint range_count = candidate_range_count(c, cell);
-    for (uint k = 0; k < range_count; ++k) {
-        const Range range = candidate_range(c, cell, k, cell_start);
-        for (uint j = range.begin; j < range.end; j += width) {
-            const Vec8x4 x_j = load(position + j);
-            const Vec8 r_squared = distance_squared(x_i, x_j);
-            const uint hits = less_mask(r_squared, c.support_radius_squared) & lanes_within(j, range.end);
-            if (hits) visit(j, hits, x_j, r_squared);
+    // Calls visit(place in the columns) for every vector of candidates of a particle at x_i, until they are all seen.
+    template <typename Visit>
+    inline __attribute__((always_inline)) void for_all(const float4& x_i, const Visit& visit) {
+        start(c_.use_grid ? cell_of(c_, x_i) : CellCoordinates{0u, 0u, 0u});
+        for (;;) {
+            for (uint k = 0; k < count_; k += width) visit(k);
+            if (is_last_) return;
+            fill();
         }
     }
-}
 
-// As a mask of whole lanes.
-Vec8 keep(uint mask, Vec8 a) {
-    const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-    const __m256i set = _mm256_and_si256(_mm256_set1_epi32(static_cast<int>(mask)), bits);
-    return _mm256_and_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(set, bits)), a);
-}
+    Vec distance_squared(const float4& x_i, uint k) const {
+        const Vec dx = x_i.x - load(x_ + k), dy = x_i.y - load(y_ + k), dz = x_i.z - load(z_ + k);
+        return dx * dx + dy * dy + dz * dz;
+    }
+    Vec fourth(uint k) const { return load(w_ + k); }
+    const uint* index(uint k) const { return index_ + k; }
+
+ private:
+    // The cell before is often the cell still.
+    void start(CellCoordinates cell) {
+        const bool is_here = cell.x == cell_.x && cell.y == cell_.y && cell.z == cell_.z;
+        if (is_here && is_whole_) return;
+        cell_ = cell;
+        range_ = done_of_range_ = 0;
+        fill();
+        is_whole_ = is_last_;
+    }
+
+    void fill() {
+        const uint range_count = candidate_range_count(c_, cell_);
+        count_ = 0;
+        is_last_ = true;
+        for (; range_ < range_count; ++range_, done_of_range_ = 0) {
+            const Range range = candidate_range(c_, cell_, range_, cell_start_);
+            for (; range.begin + done_of_range_ < range.end; done_of_range_ += width) {
+                if (count_ + width > k_room) {
+                    is_last_ = false;
+                    break;
+                }
+                take(range.begin + done_of_range_, range.end);
+            }
+            if (!is_last_) break;
+        }
+        store(x_ + count_, k_far - Vec{});  // what the last vector holds beyond the last candidate is no neighbour
+    }
+
+    void take(uint first, uint end) {
+        const Vec4 rows = load(position_ + first);
+        store(x_ + count_, rows.x);
+        store(y_ + count_, rows.y);
+        store(z_ + count_, rows.z);
+        store(w_ + count_, rows.w);
+        store_indices(first, index_ + count_);
+        count_ += end - first < width ? end - first : width;
+    }
+
+    static constexpr uint k_room = 512;
+    const StepConstants& c_;
+    const float4* position_;
+    const uint* cell_start_;
+    CellCoordinates cell_{~0u, ~0u, ~0u};
+    uint range_ = 0, done_of_range_ = 0, count_ = 0;
+    bool is_last_ = true, is_whole_ = false;
+    alignas(64) float x_[k_room + width];
+    alignas(64) float y_[k_room + width], z_[k_room + width], w_[k_room + width];
+    alignas(64) uint index_[k_room + width];
+};
 
 void density(uint begin, uint end, const StepConstants& c, const float4* position, const float4* velocity,
              const uint* cell_start, float* density_out, float4* packed_position, float4* packed_velocity) {
+    Candidates candidates(c, position, cell_start);
     for (uint i = begin; i < end; ++i) {
         const float4 x_i = position[i];
-        Vec8 sum{};
-        for_hits(c, position, cell_start, x_i, [&](uint, uint hits, const Vec8x4& x_j, Vec8 r_squared) {
-            sum += keep(hits, x_j.w * poly6(r_squared, c.support_radius_squared));
+        Vec sum{};
+        candidates.for_all(x_i, [&](uint k) {
+            // At the support radius the kernel is zero.
+            const Vec r_squared = min_f(candidates.distance_squared(x_i, k), c.support_radius_squared);
+            sum += candidates.fourth(k) * poly6(r_squared, c.support_radius_squared);
         });
         store_pressure_state(c, i, sum_of(sum), x_i, velocity[i], density_out, packed_position, packed_velocity);
     }
@@ -78,6 +136,7 @@ void density(uint begin, uint end, const StepConstants& c, const float4* positio
 
 void fluid_force(uint begin, uint end, const StepConstants& c, const float4* packed_position,
                  const float4* packed_velocity, const float* density_in, const uint* cell_start, float4* acceleration) {
+    Candidates candidates(c, packed_position, cell_start);
     for (uint i = begin; i < end; ++i) {
         const float4 x_i = packed_position[i], v_i = packed_velocity[i];
         uint hit[k_most_hits + width], count = 0;
@@ -88,8 +147,9 @@ void fluid_force(uint begin, uint end, const StepConstants& c, const float4* pac
                 sum = add_force(sum, c, x_i, v_i, gather(packed_position, hit + k), gather(packed_velocity, hit + k));
             count = 0;
         };
-        for_hits(c, packed_position, cell_start, x_i, [&](uint j, uint hits, const Vec8x4&, Vec8) {
-            count += compress_store(hits, j, hit + count);
+        candidates.for_all(x_i, [&](uint k) {
+            const uint hits = less_mask(candidates.distance_squared(x_i, k), c.support_radius_squared);
+            count += compress_store(hits, candidates.index(k), hit + count);
             if (count > k_most_hits - width) flush();
         });
         flush();
@@ -101,23 +161,27 @@ void fluid_force(uint begin, uint end, const StepConstants& c, const float4* pac
 
 void build_neighbor_list(uint begin, uint end, const StepConstants& c, const float4* position, const uint* cell_start,
                          uint* neighbor_count, uint* list) {
+    Candidates candidates(c, position, cell_start);
     for (uint i = begin; i < end; ++i) {
+        const float4 x_i = position[i];
         uint* const mine = list + std::size_t{i} * c.list_particle_stride;
         uint count = 0;
-        for_hits(c, position, cell_start, position[i], [&](uint j, uint hits, const Vec8x4&, Vec8) {
-            if (i - j < width) hits &= ~(1u << (i - j));
+        candidates.for_all(x_i, [&](uint k) {
+            const uint* const index = candidates.index(k);
+            uint hits =
+                less_mask(candidates.distance_squared(x_i, k), c.support_radius_squared) & ~equal_mask(index, i);
             if (count + width <= c.list_capacity)
-                count += compress_store(hits, j, mine + count);
+                count += compress_store(hits, index, mine + count);
             else
                 for (; hits; hits &= hits - 1, ++count)
-                    if (count < c.list_capacity) mine[count] = j + static_cast<uint>(__builtin_ctz(hits));
+                    if (count < c.list_capacity) mine[count] = index[__builtin_ctz(hits)];
         });
         neighbor_count[i] = count;
         pad_list(c, list, i, count);
     }
 }
 
-// Calls visit(indices of eight neighbours, their volumes and positions, pair) along the list of particle i.
+// Calls visit(indices of a vector of neighbours, their volumes and positions, pair) along the list of particle i.
 template <typename Visit>
 inline __attribute__((always_inline)) void for_list(const StepConstants& c, uint i, const uint* neighbor_count,
                                                     const uint* list, const float4* volume_position,
@@ -126,38 +190,44 @@ inline __attribute__((always_inline)) void for_list(const StepConstants& c, uint
     const uint count = list_length(c, neighbor_count[i]);
     const float4 x_i = volume_position[i];
     for (uint k = 0; k < count; k += width) {
-        const Vec8x4 x_j = gather(volume_position, mine + k);
+        const Vec4 x_j = gather(volume_position, mine + k);
         visit(mine + k, x_j, pair_of(x_i, x_j));
     }
 }
 
-void spline_density(uint begin, uint end, const StepConstants& c, const float4* position, const uint* neighbor_count,
-                    const uint* list, const float4* volume_position, const ColliderConstants* collider,
-                    float* density_out, float4* factor, float* wall_rate) {
+void sum_neighborhood(uint begin, uint end, const StepConstants& c, const float4* position, const float4* velocity,
+                      const uint* neighbor_count, const uint* list, const float4* volume_position,
+                      const ColliderConstants* collider, float* density_out, float4* factor, float* wall_rate,
+                      float* rate, float4* viscous) {
     for (uint i = begin; i < end; ++i) {
-        Vec8 relative{}, squares{};
-        Real3 s = zero_vector();
-        for_list(c, i, neighbor_count, list, volume_position, [&](const uint* j, const Vec8x4& x_j, const Pair& pair) {
+        const float4 v_i = velocity[i];
+        Vec relative{}, squares{}, approach{};
+        Real3 s = zero_vector(), shear = zero_vector();
+        for_list(c, i, neighbor_count, list, volume_position, [&](const uint* j, const Vec4& x_j, const Pair& pair) {
+            const Vec4 v_j = gather(velocity, j);
             relative += without(x_j.w * kernel_value(c, pair.r), j, i);
             s = add_gradient(s, c, x_j.w, pair);
             squares += gradient_squared_term(c, x_j.w, pair);
+            approach += divergence_term(c, x_j.w, pair, v_j);
+            shear = add_gradient(shear, c, viscosity_weight(c, x_j.w, pair, v_i, v_j), pair);
         });
         const WallTerm walls = walls_at(c, collider, position[i]);
         const float volume = volume_position[i].w;
         const float own = volume * ::kernel_value(c, 0.0f) + walls.share;
         store_density(c, i, volume, own + sum_of(relative), sum_of(s), sum_of(squares), walls, density_out, factor,
                       wall_rate);
+        rate[i] = divergence_of(factor[i], v_i, sum_of(approach)) - walls.rate;
+        store_viscosity(c, i, sum_of(shear), viscous);
     }
 }
 
 float divergence(const StepConstants& c, uint i, const uint* neighbor_count, const uint* list,
                  const float4* volume_position, const float4* factor, const float4* field) {
-    Vec8 sum{};
-    for_list(c, i, neighbor_count, list, volume_position, [&](const uint* j, const Vec8x4& x_j, const Pair& pair) {
+    Vec sum{};
+    for_list(c, i, neighbor_count, list, volume_position, [&](const uint* j, const Vec4& x_j, const Pair& pair) {
         sum += divergence_term(c, x_j.w, pair, gather(field, j));
     });
-    const float4 s = factor[i], a = field[i];
-    return s.x * a.x + s.y * a.y + s.z * a.z - sum_of(sum);
+    return divergence_of(factor[i], field[i], sum_of(sum));
 }
 
 void density_rate(uint begin, uint end, const StepConstants& c, const float4* velocity, const uint* neighbor_count,
@@ -167,35 +237,23 @@ void density_rate(uint begin, uint end, const StepConstants& c, const float4* ve
         rate[i] = divergence(c, i, neighbor_count, list, volume_position, factor, velocity) - wall_rate[i];
 }
 
-void jacobi_step(uint begin, uint end, const StepConstants& c, float relaxation, const float4* gradient,
-                 const uint* neighbor_count, const uint* list, const float4* volume_position, const float4* factor,
-                 const float* target, const float* u, float* residual, float* step) {
-    for (uint i = begin; i < end; ++i)
-        store_jacobi_step(i, relaxation, divergence(c, i, neighbor_count, list, volume_position, factor, gradient),
-                          factor, target, u, residual, step);
+void pressure_residual(uint begin, uint end, const StepConstants& c, const float4* gradient, const uint* neighbor_count,
+                       const uint* list, const float4* volume_position, const float4* factor, const float* target,
+                       float* residual) {
+    for (uint i = begin; i < end; ++i) {
+        const float k_u = divergence(c, i, neighbor_count, list, volume_position, factor, gradient);
+        residual[i] = factor[i].w > 0.0f ? target[i] - k_u : 0.0f;
+    }
 }
 
 void pressure_gradient(uint begin, uint end, const StepConstants& c, const float* u, const uint* neighbor_count,
                        const uint* list, const float4* volume_position, const float4* factor, float4* gradient) {
     for (uint i = begin; i < end; ++i) {
         Real3 sum = zero_vector();
-        for_list(c, i, neighbor_count, list, volume_position, [&](const uint* j, const Vec8x4& x_j, const Pair& pair) {
+        for_list(c, i, neighbor_count, list, volume_position, [&](const uint* j, const Vec4& x_j, const Pair& pair) {
             sum = add_gradient(sum, c, x_j.w * gather(u, j), pair);
         });
         store_gradient(i, u[i], factor[i], sum_of(sum), gradient);
-    }
-}
-
-void laplacian_viscosity(uint begin, uint end, const StepConstants& c, const float4* velocity,
-                         const uint* neighbor_count, const uint* list, const float4* volume_position,
-                         float4* acceleration) {
-    for (uint i = begin; i < end; ++i) {
-        const float4 v_i = velocity[i];
-        Real3 sum = zero_vector();
-        for_list(c, i, neighbor_count, list, volume_position, [&](const uint* j, const Vec8x4& x_j, const Pair& pair) {
-            sum = add_gradient(sum, c, viscosity_weight(c, x_j.w, pair, v_i, gather(velocity, j)), pair);
-        });
-        store_viscosity(c, i, sum_of(sum), acceleration);
     }
 }
 
@@ -203,8 +261,8 @@ void correct_pressure(uint begin, uint end, const StepConstants& c, float delta,
                       const uint* neighbor_count, const uint* list, const ColliderConstants* collider,
                       const float4* factor, float* u, float* residual) {
     for (uint i = begin; i < end; ++i) {
-        Vec8 relative{};
-        for_list(c, i, neighbor_count, list, predicted, [&](const uint* j, const Vec8x4& x_j, const Pair& pair) {
+        Vec relative{};
+        for_list(c, i, neighbor_count, list, predicted, [&](const uint* j, const Vec4& x_j, const Pair& pair) {
             relative += without(x_j.w * kernel_value(c, pair.r), j, i);
         });
         const float4 x_i = predicted[i];
@@ -213,7 +271,66 @@ void correct_pressure(uint begin, uint end, const StepConstants& c, float delta,
     }
 }
 
-}  // namespace wide
+CoarseGradient coarse_gradient(const StepConstants& c, uint i, const float4* volume_position, const float* weight,
+                               const uint* neighbor_count, const uint* list) {
+    const uint* const mine = list + std::size_t{i} * c.list_particle_stride;
+    const uint count = list_length(c, neighbor_count[i]);
+    const float4 x_i = volume_position[i];
+    CoarseGradient a = no_coarse_gradient();
+    for (uint k = 0; k < count; k += width)
+        a = add_coarse_gradient(a, c, gather(weight, mine + k), x_i, gather(volume_position, mine + k));
+    return a;
+}
+
+void coarse_products(uint begin, uint end, const StepConstants& c, const uint&, const uint* cell_start,
+                     const float4* volume_position, const float4* factor, const float* weight,
+                     const uint* neighbor_count, const uint* list, float* table) {
+    for (uint cell = begin; cell < end; ++cell) {
+        const uint first = cell_start[cell], last = cell_start[cell + 1];
+        if (last - first < COARSE_LEAST) continue;
+        Vec8 product[8] = {};
+        for (uint i = first; i < last; ++i) {
+            const CoarseGradient a = coarse_gradient(c, i, volume_position, weight, neighbor_count, list);
+            Vec8 x = sums_of(a.x), y = sums_of(a.y), z = sums_of(a.z);
+            if (weight[i] > 0.0f) {
+                x[0] += factor[i].x;
+                y[0] += factor[i].y;
+                z[0] += factor[i].z;
+            }
+            for (uint p = 0; p < 8; ++p) product[p] += x[p] * x + y[p] * y + z[p] * z;
+        }
+        float* out = table + first / COARSE_LEAST * COARSE_TABLE;
+        for (uint p = 0; p < 8; ++p)
+            for (uint q = p; q < 8; ++q) *out++ = product[p][q];
+    }
+}
+
+// Neighbouring lanes of the sums at once, each in the order of the plain loop.
+void anderson_sums(uint begin, uint end, const uint& count, const uint& lane_count, const float4* factor,
+                   const float* residual, const float* u, const float* step, const float* step_1, const float* step_2,
+                   float* sums) {
+    uint lane = begin;
+    for (; lane + width <= end && lane + width <= lane_count; lane += width) {
+        SolveSums s = zero_sums();
+        for (uint i = lane; i < count; i += lane_count) {
+            const uint beyond = i + width > count ? i + width - count : 0;  // of the last row
+            const uint within = ((1u << width) - 1u) >> beyond;
+            s = add_to_sums(s, load(factor + i).w, keep(within, load(residual + i)), load(u + i),
+                            keep(within, load(step + i)), keep(within, load(step_1 + i)),
+                            keep(within, load(step_2 + i)));
+        }
+        store(sums + lane, s.residual);
+        store(sums + lane_count + lane, s.m00);
+        store(sums + 2 * lane_count + lane, s.m01);
+        store(sums + 3 * lane_count + lane, s.m11);
+        store(sums + 4 * lane_count + lane, s.y0);
+        store(sums + 5 * lane_count + lane, s.y1);
+    }
+    for (; lane < end; ++lane)
+        ::anderson_sums(lane, count, lane_count, factor, residual, u, step, step_1, step_2, sums);
+}
+
+}  // namespace FONTANA_WIDE
 
 namespace {
 
@@ -239,14 +356,16 @@ struct Loop<void (*)(uint, P...), void (*)(uint, uint, W...)> {
 
 }  // namespace
 
-KernelLoop wide_loop(const char* kernel) {
+KernelLoop FONTANA_WIDE_LOOP(const char* kernel) {
     const struct {
         const char* name;
         KernelLoop run;
     } table[] = {
-#define WIDE(function) {#function, &Loop<decltype(&::function), decltype(&wide::function)>::run<&wide::function>},
-        WIDE(density) WIDE(fluid_force) WIDE(build_neighbor_list) WIDE(spline_density) WIDE(density_rate)
-            WIDE(jacobi_step) WIDE(pressure_gradient) WIDE(laplacian_viscosity) WIDE(correct_pressure)
+#define WIDE(function) \
+    {#function, &Loop<decltype(&::function), decltype(&FONTANA_WIDE::function)>::run<&FONTANA_WIDE::function>},
+        WIDE(density) WIDE(fluid_force) WIDE(build_neighbor_list) WIDE(sum_neighborhood) WIDE(density_rate)
+            WIDE(pressure_residual) WIDE(pressure_gradient) WIDE(correct_pressure) WIDE(anderson_sums)
+                WIDE(coarse_products)
 #undef WIDE
     };
     for (const auto& row : table)

@@ -1,0 +1,109 @@
+"""What making files says: a bar at a terminal, a line a frame in a log, JSON lines for programs."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from fontana.runs.text import clock
+
+
+class Quiet:
+    """Says nothing; the base of the others."""
+
+    def note(self, sentence: str) -> None:
+        """Something the user should know."""
+
+    def start(self, what: str, total: int, done: int) -> None:
+        """`total` frames are asked for, of which `done` are there."""
+
+    def frame(self, entry: dict) -> None:
+        """A frame is done: {"frame": ..., "text": what it is like, ...}."""
+
+    def finish(self, files: str) -> None:
+        """All is on disk."""
+
+    def close(self) -> None:
+        """Leaves the terminal as it was; safe to call twice."""
+
+
+class Lines(Quiet):
+    """A line a frame."""
+
+    def __init__(self) -> None:
+        self.console = Console(highlight=False, soft_wrap=True)
+        self._begin, self._made, self._total = time.monotonic(), 0, 0
+
+    def note(self, sentence: str) -> None:
+        self.console.print(f"note: {sentence}", markup=False)
+
+    def start(self, what: str, total: int, done: int) -> None:
+        self._total = total
+        there = f", {done} of them there already" if done else ""
+        self.console.print(f"{what}: {total} frame{'s' * (total != 1)}{there}", markup=False)
+
+    def frame(self, entry: dict) -> None:
+        self._made += 1
+        self.console.print(f"frame {entry['frame']:4d}  {entry['text']}", markup=False)
+
+    def finish(self, files: str) -> None:
+        self.close()
+        seconds = time.monotonic() - self._begin
+        self.console.print(f"done: {self._made} of {self._total} frames made now, in {clock(seconds)}", markup=False)
+        self.console.print(f"  files  {files}", markup=False)
+
+
+class Bar(Lines):
+    """A bar on a terminal."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        columns = (TextColumn("{task.description}"), BarColumn(bar_width=32), MofNCompleteColumn())
+        self._progress = Progress(
+            *columns, TimeRemainingColumn(), TextColumn("{task.fields[text]}"), console=self.console
+        )
+        self._task = self._progress.add_task("first frame", total=None, text="")
+
+    def start(self, what: str, total: int, done: int) -> None:
+        super().start(what, total, done)
+        self._progress.update(self._task, total=total, completed=done)
+        self._progress.start()
+
+    def frame(self, entry: dict) -> None:
+        self._made += 1
+        self._progress.update(self._task, advance=1, description=f"frame {entry['frame']}", text=entry["text"])
+
+    def close(self) -> None:
+        self._progress.stop()
+
+
+class Json(Quiet):
+    """One JSON object a line: {"event": "start" | "note" | "frame" | "finish" | "error", ...}."""
+
+    def note(self, sentence: str) -> None:
+        self._emit("note", message=sentence)
+
+    def start(self, what: str, total: int, done: int) -> None:
+        self._emit("start", what=what, frames=total, done=done)
+
+    def frame(self, entry: dict) -> None:
+        self._emit("frame", **{name: value for name, value in entry.items() if name != "text"})
+
+    def finish(self, files: str) -> None:
+        self._emit("finish", files=files)
+
+    def _emit(self, event: str, **values: object) -> None:
+        print(json.dumps({"event": event} | values), flush=True)
+
+
+def make_progress(as_json: bool, quiet: bool) -> Quiet:
+    """The one that fits where the output goes."""
+    if as_json:
+        return Json()
+    if quiet:
+        return Quiet()
+    return Bar() if sys.stdout.isatty() else Lines()

@@ -1,0 +1,57 @@
+"""One file that holds all frames of a cache: read one after the other, since such a file has one writer."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from typing import Protocol
+
+import numpy as np
+
+from fontana import _core
+from fontana.cache import Cache
+from fontana.export.progress import Quiet
+from fontana.export.sequence import refuse_skipped
+from fontana.export.target import Target
+from fontana.runs.runner import StoppedError
+from fontana.runs.stop import StopSignals
+
+_STOP_MESSAGE = "stopping after this frame; once more stops at once"
+
+
+class FrameWriter(Protocol):
+    """What takes the frames, in ascending order."""
+
+    def add(self, frame: int, arrays: dict[str, np.ndarray]) -> None: ...
+
+
+def write_whole(
+    cache: Cache, frames: list[int], writer: AbstractContextManager[FrameWriter], target: Target, progress: Quiet
+) -> None:
+    """Adds the frames to the file that `writer` publishes at its end.
+
+    Frames that are missing or damaged are skipped: once all others are done, IoError names them. Raises StoppedError on
+    Ctrl-C and SIGTERM, when the file has the frames so far.
+    """
+    skipped: dict[int, str] = {}
+    added = 0
+    progress.start(str(target.whole), len(frames), 0)
+    with StopSignals(_STOP_MESSAGE) as stop:
+        with writer as file:
+            for frame in frames:
+                if stop.requested:
+                    break
+                try:
+                    arrays = cache.read(frame)
+                except _core.IoError as error:
+                    skipped[frame] = str(error)
+                    progress.note(f"frame {frame} is skipped: {error}")
+                    continue
+                file.add(frame, arrays)
+                added += 1
+                progress.frame({"frame": frame, "text": f"{len(arrays['id']):,} particles"})
+        if stop.requested and added + len(skipped) < len(frames):
+            raise StoppedError(
+                stop.requested,
+                f'"{target.whole}" has {added} of {len(frames)} frames; the same command makes it anew',
+            )
+    refuse_skipped(skipped)

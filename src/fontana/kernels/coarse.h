@@ -1,0 +1,312 @@
+// The coarse correction of the pressure solve: what relaxation is slow at, pressure over long distances, found on a few
+// unknowns. They are one a coarse cell of 2 x 2 x 2 cells of the grid (piecewise constant aggregation), with the
+// matrix P^T K P that makes of K = G^T G (Galerkin); then coarser levels, merged two by two along each axis down to
+// 2 x 2 x 2 unknowns, and a V-cycle over them with damped Jacobi (Trottenberg, Oosterlee and Schueller 2001, 8.7).
+//
+// Only particles where pressure acts or is called for take part, and only cells with at least COARSE_LEAST particles:
+// then the table of a cell has its place by the index of its first particle, and memory follows the particles.
+#ifndef FONTANA_COARSE_H
+#define FONTANA_COARSE_H
+
+#include "coarse_pair.h"
+#include "incompressible.h"
+
+#define COARSE_LEAST 4u
+#define COARSE_TABLE 36u    // products of the 8 coarse unknowns that one cell's particles feel, symmetric
+#define COARSE_STENCIL 27u  // a coarse cell and its neighbours; slot (x+1) + 3 (y+1) + 9 (z+1)
+#define COARSE_CENTRE 13u
+#define COARSE_SMOOTHING 0.6f
+#define COARSE_STRETCH 1.5f  // piecewise constants are too stiff; over-correction makes up for it (Braess 1995)
+#define COARSE_BOTTOM_SWEEPS 20u
+
+// A level's box of cells, which wraps around as that of the grid does.
+typedef struct CoarseLevel {
+    uint mask_x, mask_y, mask_z;
+    uint shift_y, shift_z;
+} CoarseLevel;
+
+FN uint coarse_index(const CoarseLevel level, uint x, uint y, uint z) {
+    return (x & level.mask_x) | (y & level.mask_y) << level.shift_y | (z & level.mask_z) << level.shift_z;
+}
+
+FN uint coarse_count(const CoarseLevel level) {
+    return coarse_index(level, level.mask_x, level.mask_y, level.mask_z) + 1u;
+}
+
+FN CellCoordinates coarse_cell(const CoarseLevel level, uint index) {
+    CellCoordinates cell;
+    cell.x = index & level.mask_x;
+    cell.y = index >> level.shift_y & level.mask_y;
+    cell.z = index >> level.shift_z & level.mask_z;
+    return cell;
+}
+
+// The cell of a slot of the stencil around `cell`.
+FN uint coarse_neighbor(const CoarseLevel level, CellCoordinates cell, uint slot) {
+    return coarse_index(level, cell.x + slot % 3u - 1u, cell.y + slot / 3u % 3u - 1u, cell.z + slot / 9u - 1u);
+}
+
+// V where the particle takes part, else 0.
+KERNEL void coarse_weights(THREAD_ARG const uint count, GLOBAL const float4* RESTRICT volume_position,
+                           GLOBAL const float4* RESTRICT factor, GLOBAL const float* RESTRICT target,
+                           GLOBAL const float* RESTRICT u, GLOBAL float* RESTRICT weight) {
+    const uint i = THREAD_INDEX;
+    if (i >= count) return;
+    weight[i] = factor[i].w > 0.0f && (u[i] > 0.0f || target[i] > 0.0f) ? volume_position[i].w : 0.0f;
+}
+
+FN CoarseGradient coarse_gradient(const StepConstants c, uint i, GLOBAL const float4* RESTRICT volume_position,
+                                  GLOBAL const float4* RESTRICT factor, GLOBAL const float* RESTRICT weight,
+                                  GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list) {
+    const float4 x_i = volume_position[i];
+    CoarseGradient a = no_coarse_gradient();
+    const uint count = list_length(c, neighbor_count[i]);
+    for (uint k = 0u; k < count; ++k) {
+        const uint j = neighbor(c, list, i, k);
+        a = add_coarse_gradient(a, c, weight[j], x_i, volume_position[j]);
+    }
+    if (weight[i] > 0.0f) {
+        const float4 s = factor[i];
+        a.x[0] += s.x;
+        a.y[0] += s.y;
+        a.z[0] += s.z;
+    }
+    return a;
+}
+
+// One thread a cell of the grid: the products of the columns of G P that its particles feel, summed over them.
+KERNEL void coarse_products(THREAD_ARG const StepConstants c, const uint cell_count,
+                            GLOBAL const uint* RESTRICT cell_start, GLOBAL const float4* RESTRICT volume_position,
+                            GLOBAL const float4* RESTRICT factor, GLOBAL const float* RESTRICT weight,
+                            GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
+                            GLOBAL float* RESTRICT table) {
+    const uint cell = THREAD_INDEX;
+    if (cell >= cell_count) return;
+    const uint begin = cell_start[cell], end = cell_start[cell + 1u];
+    if (end - begin < COARSE_LEAST) return;
+    float sum[COARSE_TABLE];
+    for (uint k = 0u; k < COARSE_TABLE; ++k) sum[k] = 0.0f;
+    for (uint i = begin; i < end; ++i) {
+        const CoarseGradient a = coarse_gradient(c, i, volume_position, factor, weight, neighbor_count, list);
+        uint k = 0u;
+        for (uint p = 0u; p < 8u; ++p)
+            for (uint q = p; q < 8u; ++q, ++k) sum[k] += a.x[p] * a.x[q] + a.y[p] * a.y[q] + a.z[p] * a.z[q];
+    }
+    GLOBAL float* RESTRICT out = table + begin / COARSE_LEAST * COARSE_TABLE;
+    for (uint k = 0u; k < COARSE_TABLE; ++k) out[k] = sum[k];
+}
+
+FN uint coarse_table_index(uint p, uint q) {
+    const uint low = p < q ? p : q, high = p < q ? q : p;
+    return low * 8u - low * (low + 1u) / 2u + high;
+}
+
+// The cell of the grid that stands x, y, z cells from the first one of a coarse cell.
+FN uint coarse_grid_key(const StepConstants c, CellCoordinates home, int x, int y, int z) {
+    CellCoordinates cell;
+    cell.x = (2u * home.x + (uint)x) & c.grid_mask_x;
+    cell.y = (2u * home.y + (uint)y) & c.grid_mask_y;
+    cell.z = (2u * home.z + (uint)z) & c.grid_mask_z;
+    return cell_key(c, cell);
+}
+
+// Whether any of its cells is of use; a coarse cell without has a row of zeros.
+FN bool is_occupied(const StepConstants c, CellCoordinates home, GLOBAL const uint* RESTRICT cell_start) {
+    for (int k = 0; k < 8; ++k) {
+        const uint key = coarse_grid_key(c, home, k & 1, k >> 1 & 1, k >> 2);
+        if (cell_start[key + 1u] - cell_start[key] >= COARSE_LEAST) return true;
+    }
+    return false;
+}
+
+// Along one axis, of a cell of the grid that stands -1 to 2 cells from a coarse cell's first one: the coarse cell it is
+// in, and the other one its particles feel; -1, 0 or 1 from the coarse cell.
+FN int coarse_home(int cell) { return cell < 0 ? -1 : cell / 2; }
+FN int coarse_other(int cell) { return cell == 1 ? 1 : cell == 0 ? -1 : 0; }
+
+// Adds the products of one cell's particles to a coarse cell's row of the matrix.
+FN void add_products(GLOBAL float* RESTRICT row, GLOBAL const float* RESTRICT products, int x, int y, int z) {
+    const uint p = (coarse_home(x) != 0 ? 1u : 0u) | (coarse_home(y) != 0 ? 2u : 0u) | (coarse_home(z) != 0 ? 4u : 0u);
+    for (uint q = 0u; q < 8u; ++q) {
+        const int to_x = q & 1u ? coarse_other(x) : coarse_home(x), to_y = q & 2u ? coarse_other(y) : coarse_home(y),
+                  to_z = q & 4u ? coarse_other(z) : coarse_home(z);
+        row[to_x + 1 + 3 * (to_y + 1) + 9 * (to_z + 1)] += products[coarse_table_index(p, q)];
+    }
+}
+
+// The matrix of the finest coarse level. One thread a coarse cell: the 4 x 4 x 4 cells whose particles feel it.
+KERNEL void coarse_matrix(THREAD_ARG const StepConstants c, const CoarseLevel level,
+                          GLOBAL const uint* RESTRICT cell_start, GLOBAL const float* RESTRICT table,
+                          GLOBAL float* RESTRICT stencil) {
+    const uint index = THREAD_INDEX;
+    if (index >= coarse_count(level)) return;
+    GLOBAL float* RESTRICT row = stencil + index * COARSE_STENCIL;
+    for (uint s = 0u; s < COARSE_STENCIL; ++s) row[s] = 0.0f;
+    const CellCoordinates home = coarse_cell(level, index);
+    if (!is_occupied(c, home, cell_start)) return;
+    for (int z = -1; z <= 2; ++z)
+        for (int y = -1; y <= 2; ++y)
+            for (int x = -1; x <= 2; ++x) {
+                const uint key = coarse_grid_key(c, home, x, y, z), begin = cell_start[key];
+                if (cell_start[key + 1u] - begin >= COARSE_LEAST)
+                    add_products(row, table + begin / COARSE_LEAST * COARSE_TABLE, x, y, z);
+            }
+    row[COARSE_CENTRE] *= 1.0001f;
+}
+
+// How a level's cells come together in the next: along an axis two by two, or not at all.
+typedef struct Merging {
+    uint x, y, z;  // 1 or 0
+} Merging;
+
+FN Merging merging_of(const CoarseLevel child, const CoarseLevel level) {
+    Merging merging;
+    merging.x = child.mask_x != level.mask_x ? 1u : 0u;
+    merging.y = child.mask_y != level.mask_y ? 1u : 0u;
+    merging.z = child.mask_z != level.mask_z ? 1u : 0u;
+    return merging;
+}
+
+FN uint child_count(Merging merging) { return 1u << (merging.x + merging.y + merging.z); }
+
+// The k-th of them.
+FN CellCoordinates child_cell(Merging merging, CellCoordinates home, uint k) {
+    CellCoordinates cell;
+    cell.x = (home.x << merging.x) + (k & merging.x);
+    k >>= merging.x;
+    cell.y = (home.y << merging.y) + (k & merging.y);
+    k >>= merging.y;
+    cell.z = (home.z << merging.z) + (k & merging.z);
+    return cell;
+}
+
+// Where a neighbour of a child is in the parents' stencil along one axis (0 to 2): `side` 0 to 2 of the child's.
+FN uint parent_side(uint child, uint merged, uint side) { return merged ? ((child & 1u) + side + 1u) >> 1u : side; }
+
+// The same for the next level, from the one below.
+KERNEL void coarser_matrix(THREAD_ARG const CoarseLevel child, const CoarseLevel level,
+                           GLOBAL const float* RESTRICT child_stencil, GLOBAL float* RESTRICT stencil) {
+    const uint index = THREAD_INDEX;
+    if (index >= coarse_count(level)) return;
+    GLOBAL float* RESTRICT row = stencil + index * COARSE_STENCIL;
+    for (uint s = 0u; s < COARSE_STENCIL; ++s) row[s] = 0.0f;
+    const CellCoordinates home = coarse_cell(level, index);
+    const Merging merging = merging_of(child, level);
+    for (uint k = 0u; k < child_count(merging); ++k) {
+        const CellCoordinates cell = child_cell(merging, home, k);
+        GLOBAL const float* RESTRICT from =
+            child_stencil + coarse_index(child, cell.x, cell.y, cell.z) * COARSE_STENCIL;
+        if (from[COARSE_CENTRE] == 0.0f) continue;
+        for (uint s = 0u; s < COARSE_STENCIL; ++s)
+            row[parent_side(cell.x, merging.x, s % 3u) + 3u * parent_side(cell.y, merging.y, s / 3u % 3u) +
+                9u * parent_side(cell.z, merging.z, s / 9u)] += from[s];
+    }
+}
+
+// Whether a particle takes part in this iteration. One that the matrix does not know must not: it would be corrected
+// beyond measure.
+FN bool is_pressed(float weight, float residual, float u) { return weight > 0.0f && (residual > 0.0f || u > 0.0f); }
+
+// b, and the smoother's first step from zero, z = omega b / D.
+FN void store_right_side(uint index, float sum, GLOBAL const float* RESTRICT stencil, GLOBAL float* RESTRICT b,
+                         GLOBAL float* RESTRICT guess) {
+    const float diagonal = stencil[index * COARSE_STENCIL + COARSE_CENTRE];
+    b[index] = sum;
+    guess[index] = diagonal > 0.0f ? COARSE_SMOOTHING * sum / diagonal : 0.0f;
+}
+
+// b = P^T r. One thread a coarse cell.
+KERNEL void coarse_restrict(THREAD_ARG const StepConstants c, const CoarseLevel level,
+                            GLOBAL const uint* RESTRICT cell_start, GLOBAL const float* RESTRICT weight,
+                            GLOBAL const float* RESTRICT residual, GLOBAL const float* RESTRICT u,
+                            GLOBAL const float* RESTRICT stencil, GLOBAL float* RESTRICT b,
+                            GLOBAL float* RESTRICT guess) {
+    const uint index = THREAD_INDEX;
+    if (index >= coarse_count(level)) return;
+    const CellCoordinates home = coarse_cell(level, index);
+    float sum = 0.0f;
+    for (int k = 0; k < 8; ++k) {
+        const uint key = coarse_grid_key(c, home, k & 1, k >> 1 & 1, k >> 2);
+        const uint begin = cell_start[key], end = cell_start[key + 1u];
+        if (end - begin < COARSE_LEAST) continue;
+        for (uint i = begin; i < end; ++i)
+            if (is_pressed(weight[i], residual[i], u[i])) sum += residual[i];
+    }
+    store_right_side(index, sum, stencil, b, guess);
+}
+
+// Down: what is left of b after the first step, summed into the next level's. One thread a cell of the next level.
+KERNEL void coarse_down(THREAD_ARG const CoarseLevel child, const CoarseLevel level,
+                        GLOBAL const float* RESTRICT child_stencil, GLOBAL const float* RESTRICT child_b,
+                        GLOBAL const float* RESTRICT child_guess, GLOBAL const float* RESTRICT stencil,
+                        GLOBAL float* RESTRICT b, GLOBAL float* RESTRICT guess) {
+    const uint index = THREAD_INDEX;
+    if (index >= coarse_count(level)) return;
+    const CellCoordinates home = coarse_cell(level, index);
+    const Merging merging = merging_of(child, level);
+    float sum = 0.0f;
+    for (uint k = 0u; k < child_count(merging); ++k) {
+        const CellCoordinates cell = child_cell(merging, home, k);
+        const uint from = coarse_index(child, cell.x, cell.y, cell.z);
+        GLOBAL const float* RESTRICT row = child_stencil + from * COARSE_STENCIL;
+        if (row[COARSE_CENTRE] == 0.0f) continue;
+        sum += child_b[from];
+        for (uint s = 0u; s < COARSE_STENCIL; ++s) sum -= row[s] * child_guess[coarse_neighbor(child, cell, s)];
+    }
+    store_right_side(index, sum, stencil, b, guess);
+}
+
+// The coarsest level, 2 x 2 x 2 unknowns: Gauss-Seidel, forwards and backwards. One thread.
+KERNEL void coarse_bottom(THREAD_ARG const CoarseLevel level, GLOBAL const float* RESTRICT stencil,
+                          GLOBAL const float* RESTRICT b, GLOBAL float* RESTRICT z) {
+    if (THREAD_INDEX != 0u) return;
+    const uint count = coarse_count(level);
+    for (uint k = 0u; k < count; ++k) z[k] = 0.0f;
+    for (uint sweep = 0u; sweep < 2u * COARSE_BOTTOM_SWEEPS; ++sweep)
+        for (uint k = 0u; k < count; ++k) {
+            const uint index = sweep % 2u == 0u ? k : count - 1u - k;
+            const CellCoordinates cell = coarse_cell(level, index);
+            const float diagonal = stencil[index * COARSE_STENCIL + COARSE_CENTRE];
+            float left = b[index];
+            for (uint s = 0u; s < COARSE_STENCIL; ++s)
+                if (s != COARSE_CENTRE)
+                    left -= stencil[index * COARSE_STENCIL + s] * z[coarse_neighbor(level, cell, s)];
+            z[index] = diagonal > 0.0f ? left / diagonal : 0.0f;
+        }
+}
+
+// Up: the first step with the next level's correction, smoothed once more.
+KERNEL void coarse_up(THREAD_ARG const CoarseLevel level, const CoarseLevel parent,
+                      GLOBAL const float* RESTRICT stencil, GLOBAL const float* RESTRICT b,
+                      GLOBAL const float* RESTRICT guess, GLOBAL const float* RESTRICT parent_z,
+                      GLOBAL float* RESTRICT z) {
+    const uint index = THREAD_INDEX;
+    if (index >= coarse_count(level)) return;
+    GLOBAL const float* RESTRICT row = stencil + index * COARSE_STENCIL;
+    const float diagonal = row[COARSE_CENTRE];
+    z[index] = 0.0f;
+    if (diagonal <= 0.0f) return;
+    const CellCoordinates cell = coarse_cell(level, index);
+    const Merging merging = merging_of(level, parent);
+    float left = b[index], own = 0.0f;
+    for (uint s = 0u; s < COARSE_STENCIL; ++s) {
+        const uint from = coarse_neighbor(level, cell, s);
+        const CellCoordinates there = coarse_cell(level, from);
+        const uint above = coarse_index(parent, there.x >> merging.x, there.y >> merging.y, there.z >> merging.z);
+        const float value = guess[from] + COARSE_STRETCH * parent_z[above];
+        left -= row[s] * value;
+        if (s == COARSE_CENTRE) own = value;
+    }
+    z[index] = own + COARSE_SMOOTHING * left / diagonal;
+}
+
+// The correction of a particle.
+FN float coarse_correction(const StepConstants c, const CoarseLevel level, float4 position,
+                           GLOBAL const uint* RESTRICT cell_start, GLOBAL const float* RESTRICT z) {
+    const CellCoordinates cell = cell_of(c, position);
+    const uint key = cell_key(c, cell);
+    if (cell_start[key + 1u] - cell_start[key] < COARSE_LEAST) return 0.0f;
+    return z[coarse_index(level, cell.x >> 1u, cell.y >> 1u, cell.z >> 1u)];
+}
+
+#endif

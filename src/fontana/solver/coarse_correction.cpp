@@ -1,0 +1,92 @@
+#include "solver/coarse_correction.h"
+
+#include <algorithm>
+
+namespace fontana {
+namespace {
+
+struct Bits {
+    std::uint32_t x, y, z;
+};
+
+bool operator==(const Bits& a, const Bits& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+
+// Half as many cells along each axis, but never fewer than two: with one a cell would be its own neighbour.
+Bits merged(const Bits& bits) {
+    return {std::max(1u, bits.x - 1u), std::max(1u, bits.y - 1u), std::max(1u, bits.z - 1u)};
+}
+
+CoarseLevel level_of(const Bits& bits) {
+    return {(1u << bits.x) - 1u, (1u << bits.y) - 1u, (1u << bits.z) - 1u, bits.x, bits.x + bits.y};
+}
+
+bool is_same(const CoarseLevel& a, const CoarseLevel& b) {
+    return a.mask_x == b.mask_x && a.mask_y == b.mask_y && a.mask_z == b.mask_z;
+}
+
+}  // namespace
+
+void CoarseCorrection::reserve(Substep& s) {
+    const std::size_t table_bytes = (s.particles.count() / COARSE_LEAST + 1) * COARSE_TABLE * 4;
+    if (!table_ || table_->bytes() < table_bytes) {
+        weight_ = backend_.allocate("coarse weight", s.particles.count() * 5);
+        table_ = backend_.allocate("coarse products", table_bytes * 5 / 4);
+    }
+    const GridShape& grid = s.neighborhood.shape();
+    Bits bits = merged({grid.bits_x, grid.bits_y, grid.bits_z});
+    if (!levels_.empty() && is_same(levels_.front().shape, level_of(bits))) return;
+    levels_.clear();
+    for (;;) {
+        const CoarseLevel shape = level_of(bits);
+        const std::size_t count = coarse_count(shape);
+        levels_.push_back({shape, backend_.allocate("coarse matrix", count * COARSE_STENCIL * 4),
+                           backend_.allocate("coarse residual", count * 4),
+                           backend_.allocate("coarse guess", count * 4),
+                           backend_.allocate("coarse correction", count * 4)});
+        if (merged(bits) == bits) return;
+        bits = merged(bits);
+    }
+}
+
+void CoarseCorrection::prepare(Substep& s, Operators& operators, Buffer& u) {
+    reserve(s);
+    const auto count = static_cast<std::uint32_t>(s.particles.count());
+    const auto cell_count = static_cast<std::uint32_t>(s.neighborhood.shape().cell_count());
+    backend_.launch(Kernel::coarse_weights, count,
+                    {count, operators.volume_position(), operators.factor(), operators.rate(), u, *weight_});
+    backend_.launch(Kernel::coarse_products, cell_count,
+                    {s.constants, cell_count, s.neighborhood.cell_start(), operators.volume_position(),
+                     operators.factor(), *weight_, operators.list().count(), operators.list().list(), *table_});
+    backend_.launch(Kernel::coarse_matrix, coarse_count(finest()),
+                    {s.constants, finest(), s.neighborhood.cell_start(), *table_, *levels_.front().stencil});
+    for (std::size_t k = 1; k < levels_.size(); ++k)
+        backend_.launch(Kernel::coarser_matrix, coarse_count(levels_[k].shape),
+                        {levels_[k - 1].shape, levels_[k].shape, *levels_[k - 1].stencil, *levels_[k].stencil});
+}
+
+void CoarseCorrection::solve(Substep& s, Buffer& residual, Buffer& u) {
+    Level& first = levels_.front();
+    backend_.launch(Kernel::coarse_restrict, coarse_count(first.shape),
+                    {s.constants, first.shape, s.neighborhood.cell_start(), *weight_, residual, u, *first.stencil,
+                     *first.b, *first.guess});
+    for (std::size_t k = 1; k < levels_.size(); ++k) {
+        const Level &child = levels_[k - 1], &level = levels_[k];
+        backend_.launch(
+            Kernel::coarse_down, coarse_count(level.shape),
+            {child.shape, level.shape, *child.stencil, *child.b, *child.guess, *level.stencil, *level.b, *level.guess});
+    }
+    Level& last = levels_.back();
+    backend_.launch(Kernel::coarse_bottom, 1, {last.shape, *last.stencil, *last.b, *last.z});
+    for (std::size_t k = levels_.size() - 1; k-- > 0;) {
+        const Level &level = levels_[k], &parent = levels_[k + 1];
+        backend_.launch(Kernel::coarse_up, coarse_count(level.shape),
+                        {level.shape, parent.shape, *level.stencil, *level.b, *level.guess, *parent.z, *level.z});
+    }
+}
+
+std::uint64_t CoarseCorrection::bytes(std::uint64_t particle_count) {
+    const std::uint64_t cells = particle_count / 8;  // of the grid; a level has an eighth of the one below
+    return particle_count / COARSE_LEAST * COARSE_TABLE * 5 + cells / 7 * (COARSE_STENCIL + 2) * 4;
+}
+
+}  // namespace fontana

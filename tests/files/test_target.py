@@ -1,0 +1,44 @@
+"""Names and numbers of frames."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from fontana import _core
+from fontana.cache import Cache, frame_list
+from fontana.export.target import parse_target
+
+
+@pytest.mark.parametrize("text", ["out/w.ply", "out/w.####.ply", "out/w####.PLY", "out/w.#.ply"])
+def test_a_name_with_or_without_number(text: str) -> None:
+    target = parse_target(text, [".ply"])
+    assert target.frame(7) == Path("out/w.0007.ply")
+    assert target.frame(12345) == Path("out/w.12345.ply")
+    assert target.record == Path("out/w.ply.json")
+
+
+def test_a_range_is_a_list_of_frames(splash: Path) -> None:
+    cache = Cache(splash)
+    assert cache.select("2-4,9, 3") == [2, 3, 4, 9]
+    assert cache.select(None) == list(range(1, 13))
+    for text in ("", "-3", "1-", "0", "13", "1-2-3", "99999999999999"):
+        with pytest.raises(_core.BadInput, match="--frames"):
+            cache.select(text)
+
+
+def test_frames_in_a_sentence() -> None:
+    assert frame_list([8, 3, 7, 1, 2]) == "1 to 3, 7 to 8"
+    assert frame_list([5]) == "5"
+
+
+def test_the_rate_and_the_unit_are_the_scenes(fontana, tmp_path: Path) -> None:
+    scene = '{"name": "s", "time": {"frame_rate": 30, "simulation_scale": 0.01}, "fluid": {"particle_spacing": 0.02},'
+    scene += '"emitters": [{"type": "block", "size": [10, 10, 10]}], "output": {"frames": 1}}'
+    (tmp_path / "s.json").write_text(scene)
+    fontana("run", "s.json", "--out", "s", "--no-picture", "--quiet")
+    cache = Cache(tmp_path / "s")
+    assert (cache.frame_rate, cache.unit) == (30, 0.01)
+    assert cache.particle_radius == pytest.approx(1.0)
+    assert cache.read(1)["radius"][0] == pytest.approx(1.0)

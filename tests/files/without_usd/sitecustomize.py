@@ -1,0 +1,5 @@
+"""On PYTHONPATH, as if usd-core were not installed."""
+
+import sys
+
+sys.modules["pxr"] = None
