@@ -233,7 +233,14 @@ class LiveSource:
         arrays = {name: self._simulation.read(name) for name in _ATTRIBUTES}
         number, now = self._simulation.frame, record.get("time", 0.0)
         radius, density = particle_radius(self._simulation), self._simulation.get("fluid.rest_density")
-        data = FrameData(**arrays, radius=radius, rest_density=density, centres=self._centres(now))
+        data = FrameData(
+            **arrays,
+            radius=radius,
+            rest_density=density,
+            centres=self._centres(now),
+            time=now,
+            simulation_scale=self._simulation.get("time.simulation_scale"),
+        )
         phases = dict(phases) | {"read": time.monotonic() - start} | self._kernels()
         self._snapshot = Snapshot(number, now, data, record, scheme, phases)
 
