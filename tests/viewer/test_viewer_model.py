@@ -11,6 +11,7 @@ from scenes_to_view import DROP
 
 from fontana.gl.camera import Camera
 from fontana.scene import load_scene
+from fontana.tables import parameters
 from fontana.viewer.bounds import worth_seeing
 from fontana.viewer.grip import Grip
 from fontana.viewer.keys import KEYS, MOUSE
@@ -63,10 +64,12 @@ def test_a_refused_value_becomes_a_message(model):
 
 
 def test_keys_go_round_the_backends_and_schemes(model):
-    model.next_neighbors()
-    assert model.source.settings.get("solver.neighbors") == "all-pairs"
-    model.next_neighbors()
-    assert model.source.settings.get("solver.neighbors") == "grid"
+    seen = []
+    for _ in parameters()["solver.neighbors"].choices:
+        model.next_neighbors()
+        seen.append(model.source.settings.get("solver.neighbors"))
+    assert sorted(seen) == sorted(parameters()["solver.neighbors"].choices)
+    assert seen[-1] == "grid"
     before = model.source.settings.get("solver.backend")
     model.next_backend()
     assert model.source.settings.get("solver.backend") != before
