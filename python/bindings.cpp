@@ -117,6 +117,22 @@ fontana_collider collider_from(const std::string& type, nb::kwargs keywords) {
     return collider;
 }
 
+// Every field of a collider that says nothing but its type, by the names that collider_from takes.
+nb::dict collider_defaults(const std::string& type) {
+    const fontana_collider collider = collider_from(type, nb::kwargs());
+    nb::dict fields;
+    fields["enabled"] = collider.enabled != 0;
+    fields["flip"] = collider.flip != 0;
+    fields["centre"] = nb::make_tuple(collider.centre[0], collider.centre[1], collider.centre[2]);
+    fields["radius"] = collider.radius;
+    fields["cutoff"] = collider.cutoff;
+    fields["thickness"] = collider.thickness;
+    fields["elasticity"] = collider.elasticity;
+    fields["friction"] = collider.friction;
+    fields["velocity"] = nb::make_tuple(collider.velocity[0], collider.velocity[1], collider.velocity[2]);
+    return fields;
+}
+
 fontana_emitter emitter_from(const std::string& type, nb::kwargs keywords) {
     fontana_emitter emitter;
     fontana_emitter_defaults(value_of<fontana_emitter_type>(k_emitters, type, "emitter type"), &emitter);
@@ -599,6 +615,7 @@ NB_MODULE(_core, m) {
     m.def("version", &fontana_version);
     m.def("parameters", &parameters);
     m.def("devices", &devices);
+    m.def("collider_defaults", &collider_defaults, "type"_a);
     m.def("checkpoint_info", &checkpoint_info, "path"_a);
     m.def("publish_file", &publish_file, "path"_a, "data"_a);
     m.def("hash", [](nb::bytes data) { return fontana_hash(data.c_str(), data.size()); }, "data"_a);

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -167,6 +167,13 @@ class Simulation:
         """A force on each particle, (N, 3) newtons in order of id, held until set again; None clears it."""
         self._core.set_force(None if force is None else _array("force", force, (self.particle_count, 3)))
 
+    def push(self, acceleration: Sequence[float], centre: Sequence[float], radius: float) -> None:
+        """A hand in the fluid: `acceleration` (m/s^2) at `centre`, fading to nothing at `radius`; 0 takes it out.
+
+        Centre and radius are in the unit of the scene, as positions are. Raises BadInput.
+        """
+        set_push(self._core, acceleration, centre, radius)
+
     def step(self, progress: Callable[[float], bool] | None = None) -> Frame:
         """Simulates one frame. `progress` gets the finished share after each substep; returning True stops.
 
@@ -183,6 +190,16 @@ class Simulation:
         remaining = self.scene.frame_count - self.frame if count is None else count
         for _ in range(remaining):
             yield self.step()
+
+
+def set_push(
+    simulation: _core.Simulation, acceleration: Sequence[float], centre: Sequence[float], radius: float
+) -> None:
+    """`Simulation.push` for the library's own object."""
+    scale = simulation.get("time.simulation_scale")
+    simulation.set("forces.push", tuple(map(float, acceleration)))
+    simulation.set("forces.push_centre", tuple(scale * float(x) for x in centre))
+    simulation.set("forces.push_radius", scale * radius)
 
 
 def _go_on(fraction: float) -> bool:

@@ -18,6 +18,7 @@ from fontana.cli.render import render
 from fontana.cli.run import resume, run
 from fontana.cli.validate import validate
 from fontana.cli.verify import verify
+from fontana.cli.view import view
 
 _HELP = f"""Fontana simulates fluids for visual effects with particles (SPH), on the CPU and on the GPU.
 
@@ -40,7 +41,7 @@ def cli() -> None:
 
 
 for command in (
-    run, resume, render, mesh, export, devices, verify, validate, bench, scenes, schema, explain, fluids
+    run, resume, view, render, mesh, export, devices, verify, validate, bench, scenes, schema, explain, fluids
 ):  # fmt: skip
     cli.add_command(command)
 

@@ -212,7 +212,7 @@ class _Run:
     def _step(self) -> None:
         report = self.simulation.step_frame(self._on_substep)
         files = [self._write(report.frame, format) for format in self.options.formats]
-        self.manifest.frames.append(_frame_record(report) | {"files": files})
+        self.manifest.frames.append(frame_record(report) | {"files": files})
         if report.frame % self.options.checkpoint_every == 0:
             self._checkpoint()
         self.manifest.publish()
@@ -256,7 +256,8 @@ class _Run:
             contact_sheet(self.folder.path)
 
 
-def _frame_record(report: object) -> dict:
+def frame_record(report: object) -> dict:
+    """What run.json says of a frame beside its files."""
     return {
         "frame": report.frame,
         "time": report.time,

@@ -3,9 +3,10 @@
 #define FONTANA_INTEGRATE_H
 
 #include "collide.h"
+#include "push.h"
 
-// What acts on a particle beside its neighbours: gravity (eq. 2.17), the wind, and a force per particle given by the
-// user, indexed by id. Adds to the acceleration.
+// What acts on a particle beside its neighbours: gravity (eq. 2.17), the wind, the user's push, and a force per
+// particle given by the user, indexed by id. Adds to the acceleration.
 KERNEL void external_force(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
                            GLOBAL const float4* RESTRICT velocity, GLOBAL const uint* RESTRICT id,
                            GLOBAL const float4* RESTRICT force_by_id, GLOBAL float4* RESTRICT acceleration) {
@@ -16,6 +17,12 @@ KERNEL void external_force(THREAD_ARG const StepConstants c, GLOBAL const float4
     a.x += c.gravity_x + c.wind_coupling * (c.wind_x - v.x);
     a.y += c.gravity_y + c.wind_coupling * (c.wind_y - v.y);
     a.z += c.gravity_z + c.wind_coupling * (c.wind_z - v.z);
+    if (c.inverse_push_radius_squared > 0.0f) {
+        const float share = push_share(c, position[i]);
+        a.x += share * c.push_x;
+        a.y += share * c.push_y;
+        a.z += share * c.push_z;
+    }
     if (c.has_force) {
         const float4 f = force_by_id[id[i]];
         const float inverse_mass = 1.0f / position[i].w;

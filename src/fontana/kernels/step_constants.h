@@ -30,6 +30,10 @@ typedef struct StepConstants {
     float inverse_cell_size;                // 1/m
     uint particle_count;
     uint collider_count;
+    // The user's push (push.h): m/s^2 at its centre, m, and 1/m^2, which is 0 where there is no push.
+    float push_x, push_y, push_z;
+    float push_centre_x, push_centre_y, push_centre_z;
+    float inverse_push_radius_squared;
     uint has_force;                              // whether the array of forces is in use
     uint use_grid;                               // 0: all pairs
     uint grid_mask_x, grid_mask_y, grid_mask_z;  // cells along an axis, less one; counts are powers of two

@@ -62,6 +62,18 @@ double lattice_sum(const Parameters& p) {
     return smoothing_scales(support).poly6 * sum;
 }
 
+void set_push(const Parameters& p, StepConstants& c) {
+    c.push_x = static_cast<float>(p.forces_push[0]);
+    c.push_y = static_cast<float>(p.forces_push[1]);
+    c.push_z = static_cast<float>(p.forces_push[2]);
+    c.push_centre_x = static_cast<float>(p.forces_push_centre[0]);
+    c.push_centre_y = static_cast<float>(p.forces_push_centre[1]);
+    c.push_centre_z = static_cast<float>(p.forces_push_centre[2]);
+    // Finite, so that a particle at the very centre of the smallest ball is no 0 times infinity.
+    const double inverse = 1.0 / (p.forces_push_radius * p.forces_push_radius);
+    c.inverse_push_radius_squared = static_cast<float>(std::min(inverse, 1e38));
+}
+
 }  // namespace
 
 SmoothingScales smoothing_scales(double h) {
@@ -143,6 +155,7 @@ StepConstants make_constants(const Parameters& p) {
     c.wind_y = static_cast<float>(p.forces_wind[1]);
     c.wind_z = static_cast<float>(p.forces_wind[2]);
     c.wind_coupling = static_cast<float>(p.forces_wind_coupling);
+    if (p.forces_push_radius > 0.0) set_push(p, c);
     c.drag = static_cast<float>(p.forces_drag);
     c.inverse_cell_size = 1.0f / c.support_radius;
     c.use_grid = p.solver_neighbors == "all-pairs" ? 0u : 1u;
