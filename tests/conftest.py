@@ -1,6 +1,9 @@
 """One test text for every backend: a test that takes `backend` or `scheme` runs on each."""
 
 import os
+import shutil
+import subprocess
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -38,6 +41,24 @@ def scheme(request):
 def opencl_device():
     """For tests of the OpenCL backend alone."""
     require_backend("opencl")
+
+
+@pytest.fixture(scope="session")
+def native_build():
+    """Builds a target of CMakeLists.txt with the release preset and returns its program: native_build("io_test")."""
+    root = Path(__file__).parents[1]
+    cmake = shutil.which("cmake") or pytest.fail("no cmake on PATH: `make build` puts one into .venv/bin")
+
+    def run(*arguments):
+        result = subprocess.run([cmake, *arguments], cwd=root, capture_output=True, text=True)
+        assert result.returncode == 0, result.stdout[-4000:] + result.stderr
+
+    def build(target):
+        run("--build", "--preset", "release", "-j", "2", "--target", target)
+        return next(path for path in (root / "build" / "release").rglob(target) if path.is_file())
+
+    run("--preset", "release", "--log-level=WARNING")
+    return build
 
 
 @pytest.fixture

@@ -172,7 +172,8 @@ void check_launches(Checks& checks, fontana::CommandQueue& queue, cl_program pro
 // More launches than events may wait to be read.
 void check_profile(Checks& checks, const fontana::OpenClDevice& device) {
     fontana::CommandQueue queue(device, true);
-    const fontana::OpenClProgram program = fontana::build_opencl_program(queue.context(), device, false);
+    const fontana::OpenClProgram program =
+        fontana::build_opencl_program(queue.context(), device, fontana::core_text(), false);
     fontana::DeviceKernel add_offsets(device, program.get(), "sort_add_offsets", "add offsets");
     const auto value = queue.allocate("value", 40), offset = queue.allocate("offset", 40);
     const std::uint32_t count = 10;
@@ -185,7 +186,8 @@ void check_profile(Checks& checks, const fontana::OpenClDevice& device) {
 int run() {
     const fontana::OpenClDevice device = fontana::find_opencl_devices().front();
     fontana::CommandQueue queue(device, false);
-    const fontana::OpenClProgram program = fontana::build_opencl_program(queue.context(), device, false);
+    const fontana::OpenClProgram program =
+        fontana::build_opencl_program(queue.context(), device, fontana::core_text(), false);
     Checks checks;
     check_sort(checks, queue, program.get());
     check_buffers(checks, queue);

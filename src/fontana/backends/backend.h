@@ -74,6 +74,25 @@ class KernelArgument {
 
 using KernelArguments = std::initializer_list<KernelArgument>;
 
+struct CpuKernel;
+
+// A kernel that is not in kernel_list.def: a plugin's or an experiment's own, in the dialect of kernels/. It comes
+// twice out of one file: as the loop of the cpu backend (backends/cpu/kernel_loop.h) and as text for devices, which
+// cmake/EmbedKernels.cmake flattens. Both must outlive what is compiled from them.
+struct KernelText {
+    const char* name;  // of the function; profiles and errors show it
+    const CpuKernel* loop;
+    const char* const* pieces;
+    std::size_t piece_count;
+};
+
+// A KernelText ready to launch, as Backend::launch does. Used only while the backend lives that compiled it.
+class CompiledKernel {
+ public:
+    virtual ~CompiledKernel() = default;
+    virtual void launch(std::size_t count, KernelArguments arguments) = 0;
+};
+
 struct ProfileRow {
     std::string name;
     std::uint64_t launches = 0;
@@ -103,6 +122,10 @@ class Backend {
 
     // Runs the kernel for thread indices 0 .. count-1 (a device may round up; kernels test their index).
     virtual void launch(Kernel kernel, std::size_t count, KernelArguments arguments) = 0;
+
+    // Throws DEVICE_UNAVAILABLE with the compiler's first lines where the text does not compile, and on a backend that
+    // has no such compiler.
+    virtual std::unique_ptr<CompiledKernel> compile(const KernelText& text);
 
     // The order that sorts `key` (count values below key_count) stably: order[k] is the old index of the k-th, and
     // start[key] .. start[key + 1] its range; `start` has key_count + 1 entries.

@@ -48,6 +48,11 @@ const KernelFacts& kernel_facts(Kernel kernel) {
     return facts[static_cast<int>(kernel)];
 }
 
+std::unique_ptr<CompiledKernel> Backend::compile(const KernelText& text) {
+    fail(FONTANA_DEVICE_UNAVAILABLE, "the backend " + device().backend + " launches the core's kernels only, not '" +
+                                         text.name + "': expected a backend with a compiler of its own, such as cpu");
+}
+
 std::vector<DeviceInfo> list_devices() {
     std::vector<DeviceInfo> devices;
     for (const BackendEntry& entry : backends())
