@@ -20,15 +20,6 @@ SOURCE = "fontana::source::1.0"
 SOLVER = "fontana::solver::1.0"
 SCENES = Path(__file__).parents[2] / "scenes"
 START_FRAME = 1  # shows the fluid as it came in; the scene's frame f is Houdini's frame START_FRAME + f
-COLLIDER_NUMBERS = (
-    "plane_x",
-    "plane_y",
-    "plane_z",
-    "sphere_inside",
-    "sphere_outside",
-    "cylinder_inside",
-    "cylinder_outside",
-)
 APERTURE = 41.4214  # mm, Houdini's default
 
 
@@ -88,23 +79,25 @@ def _fluid(scene: dict) -> hou.Node:
 
 def set_parameter(solver: hou.Node, name: str, value: object) -> None:
     """Sets a parameter by its name in a scene: set_parameter(node, "fluid.viscosity", 1.0)."""
-    short = name.split(".", 1)[1]
+    token = name.replace(".", "_")
     if isinstance(value, (list, tuple)):
-        solver.parmTuple(short).set(value)
+        solver.parmTuple(token).set(value)
     else:
-        solver.parm(short).set(value)
+        solver.parm(token).set(value)
 
 
 def set_colliders(solver: hou.Node, colliders: list[dict]) -> None:
     """Fills the node's list of implicit surfaces. Fields that a collider lacks keep the panel's defaults."""
     solver.parm("colliders").set(len(colliders))
     for number, collider in enumerate(colliders, start=1):
-        solver.parm(f"collider_type{number}").set(COLLIDER_NUMBERS.index(collider["type"]))
-        solver.parmTuple(f"collider_centre{number}").set(collider.get("centre", (0.0, 0.0, 0.0)))
+        solver.parm(f"collider_type{number}").set(collider["type"])
+        solver.parm(f"collider_use_cutoff{number}").set("cutoff" in collider)
         for field in ("radius", "cutoff", "thickness", "elasticity", "friction", "flip"):
             if field in collider:
                 solver.parm(f"collider_{field}{number}").set(collider[field])
-        _animate(solver.parmTuple(f"collider_centre{number}"), collider.get("keys", []))
+        centre = solver.parmTuple(f"collider_centre{number}")
+        centre.set(collider.get("centre", (0.0, 0.0, 0.0)))
+        _animate(centre, collider.get("keys", []))
 
 
 def _animate(parameters: hou.ParmTuple, keys: list[dict]) -> None:

@@ -41,8 +41,8 @@ class SelfTest:
 
     def __init__(self) -> None:
         self.solver = fontana_networks.box()
-        for node in (self.solver, self.solver.inputs()[0]):
-            node.parm("particle_spacing").set(SPACING)
+        self.solver.parm("fluid_particle_spacing").set(SPACING)
+        self.solver.inputs()[0].parm("particle_spacing").set(SPACING)
         self.played: dict[int, bytes] = {}
         self.seconds: list[float] = []
 
@@ -104,7 +104,7 @@ class SelfTest:
     def check_editing(self) -> None:
         """an edited parameter changes the frames, and undoing it brings them back"""
         frame = FRAMES[11]
-        gravity = self.solver.parmTuple("gravity")
+        gravity = self.solver.parmTuple("forces_gravity")
         before = gravity.eval()
         gravity.set((0.0, -3.0, 0.0))
         edited = self.position(frame)
