@@ -45,7 +45,7 @@ def opencl_device():
 
 @pytest.fixture(scope="session")
 def native_build():
-    """Builds a target of CMakeLists.txt with the release preset and returns its program: native_build("io_test")."""
+    """Builds a target of CMakeLists.txt with the release preset and returns its file: native_build("io_test")."""
     root = Path(__file__).parents[1]
     cmake = shutil.which("cmake") or pytest.fail("no cmake on PATH: `make build` puts one into .venv/bin")
 
@@ -55,7 +55,8 @@ def native_build():
 
     def build(target):
         run("--build", "--preset", "release", "-j", "2", "--target", target)
-        return next(path for path in (root / "build" / "release").rglob(target) if path.is_file())
+        files = [path for path in (root / "build" / "release").rglob(f"{target}*") if path.is_file()]
+        return next(path for path in files if path.name in (target, f"{target}.so"))
 
     run("--preset", "release", "--log-level=WARNING")
     return build

@@ -1,6 +1,6 @@
 """Makes the Houdini package: a folder and a zip, from houdini/package/ and the built library.
 
-    python tools/make_houdini_package.py [--out FOLDER] [--plugin 21.0=SOP_Fontana.so ...]
+    python tools/make_houdini_package.py [--out FOLDER] [--plugin 21.0=fontana_houdini.so ...]
 
 To install, unpack the zip into $HOUDINI_USER_PREF_DIR/packages. A version of Houdini without a --plugin gets a text
 that says how to build it. The library is the one of the installed Python package. Prints what was written.
@@ -22,7 +22,7 @@ VERSIONS = ("20.5", "21.0", "22.0")
 SCENES = ("box", "fountain_rock")  # for the scripts, which in hython have no package to read them with
 DEFAULT_VIEW = {"eye": [1.3, 1.0, 2.0], "target": [0.0, 0.25, 0.0], "field_of_view": 32.0}
 SHARED = ("config", "help", "scripts", "toolbar")
-PLUGIN_NAME = "SOP_Fontana.so"
+PLUGIN_NAME = "fontana_houdini.so"
 # The library of the double (houdini/double/), which a plugin that was built for tests is linked with.
 DOUBLE_MARK = b"libfontana_houdini_double"
 

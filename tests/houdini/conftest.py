@@ -1,6 +1,8 @@
 """The double of `hou` in place of Houdini's module, for tests that ask for it."""
 
 import importlib.util
+import json
+import subprocess
 import sys
 from pathlib import Path
 
@@ -17,3 +19,12 @@ def hou(monkeypatch):
     monkeypatch.setitem(sys.modules, "hou", module)
     specification.loader.exec_module(module)
     return module
+
+
+@pytest.fixture(scope="session")
+def panels(native_build) -> dict[str, list[dict]]:
+    """The rows of each node's panel, as the plugin gives them to the double of the HDK."""
+    program, plugin = native_build("fontana_print_panels"), native_build("fontana_houdini")
+    done = subprocess.run([program, plugin], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)

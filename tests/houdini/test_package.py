@@ -96,16 +96,16 @@ def test_the_library_in_the_package_is_the_installed_one(made):
 
 
 def test_a_plugin_goes_into_its_folder(tool, tmp_path):
-    plugin = tmp_path / "SOP_Fontana.so"
+    plugin = tmp_path / "fontana_houdini.so"
     plugin.write_bytes(b"\x7fELF a plugin")
     folder, _ = tool.make_package(tmp_path / "out", {"21.0": plugin})
-    assert (folder / "fontana/21.0/dso/SOP_Fontana.so").read_bytes() == plugin.read_bytes()
+    assert (folder / "fontana/21.0/dso/fontana_houdini.so").read_bytes() == plugin.read_bytes()
     assert not (folder / "fontana/21.0/dso/BUILD.txt").exists()
     assert (folder / "fontana/22.0/dso/BUILD.txt").exists()
 
 
 def test_a_plugin_that_cannot_be_shipped_is_refused(tool, tmp_path):
-    plugin = tmp_path / "SOP_Fontana.so"
+    plugin = tmp_path / "fontana_houdini.so"
     plugin.write_bytes(b"\x7fELF " + tool.DOUBLE_MARK)
     for version, path, sentence in (
         ("21.0", plugin, "built against the double"),

@@ -15,7 +15,7 @@ from fontana.bench._schemes import Scheme
 from fontana.bench._timing import SUBSTEPS_PER_FRAME
 from fontana.tables import COLLIDERS, parameters
 
-TARGETS = ("fontana_cook_bench", "SOP_Fontana")
+TARGETS = ("fontana_cook_bench", "fontana_houdini")
 
 
 def build_driver(checkout: Path) -> tuple[Path, Path]:
