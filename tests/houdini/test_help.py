@@ -9,7 +9,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PAGES = ROOT / "houdini" / "package" / "help" / "nodes" / "sop"
 OPERATORS = {"fontana::solver::1.0": "fontana--solver-1.0.txt", "fontana::source::1.0": "fontana--source-1.0.txt"}
-ENTRY = re.compile(r"^(\S.*):\n    #id: (\S+)\n(.*?)(?=^\S|\Z)", re.MULTILINE | re.DOTALL)
+ENTRY = re.compile(r"^(\S[^\n]*):\n    #id: (\S+)\n(.*?)(?=^\S|\Z)", re.MULTILINE | re.DOTALL)
 
 
 def entries(operator: str) -> dict[str, tuple[str, str]]:

@@ -34,9 +34,9 @@ def print_results(results: dict) -> None:
     for name, rows in results["scenes"].items():
         if rows:
             columns = ["particles", *(scheme.name for scheme in SCHEMES)]
-            title = f"{name} in the node: seconds of a frame ({_TABLES[name]} of the thesis: seconds of a run)"
+            title = f"{name}: seconds a frame in the node ({_TABLES[name]}: a run)"
             print_table(title, columns, [_line(name, row, _seconds_text) for row in rows])
-            title = f"{name}: what the node adds to the same frame through the library, in percent of it"
+            title = f"{name}: what the node adds, percent of the frame without it"
             print_table(title, columns, [_line(name, row, _overhead_text) for row in rows])
     for remark in _remarks(results):
         click.echo(remark)
@@ -62,7 +62,7 @@ def _overhead_text(cell: dict, then: float | None) -> str:
     if cell["state"] != "measured":
         return cell["state"]
     found = cell["overhead_percent"]
-    return f"{found['median']:+.1f} ({found['minimum']:+.1f} to {found['maximum']:+.1f})"
+    return f"{found['median']:+.1f} ({found['lower_quartile']:+.1f} to {found['upper_quartile']:+.1f})"
 
 
 def progress_text(cell: dict) -> str:
@@ -78,8 +78,8 @@ def _remarks(results: dict) -> list[str]:
     lines = [
         "the node cooked on a double of the HDK, not in Houdini: points in, ten substeps, points out and kept for "
         "scrubbing; Houdini's own work around a cook is not in it",
-        "an overhead is the median of pairs of frames in turn, the smallest and the largest of them in brackets; each "
-        "pair ended with the same bytes",
+        "an overhead is the median of pairs of frames taken in turn, and half of the pairs lie between the numbers in "
+        "brackets; at the end both had the same bytes",
         f"in brackets beside the seconds: the thesis's ({THESIS_HARDWARE}), of a run whose length it does not give",
         "all pairs are cut off where two frames would take longer than the budget",
         f"CPU: {machine['cpu']}, {threads} thread{'s' * (threads != 1)}; {machine['os']}",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from statistics import quantiles
 
 import click
 
@@ -146,13 +147,19 @@ def _cell(
         heard = _ask(scheme, name, count, driver, (WARM_UP_FRAMES, MOST_PAIRS, budget), threads)
     except _core.FontanaError as error:
         return {"state": "failed", "reason": str(error)}
-    pairs = list(zip(heard["node_seconds"], heard["library_seconds"], strict=True))
+    pairs = zip(heard["node_seconds"], heard["library_seconds"], strict=True)
+    overhead = [100.0 * (node / library - 1.0) for node, library in pairs]
     return {
         "state": "measured",
         "node_seconds": statistics(heard["node_seconds"]),
         "library_seconds": statistics(heard["library_seconds"]),
-        "overhead_percent": statistics([100.0 * (node / library - 1.0) for node, library in pairs]),
+        "overhead_percent": statistics(overhead) | _quartiles(overhead),
     }
+
+
+def _quartiles(values: list[float]) -> dict[str, float]:
+    lower, _, upper = quantiles(values, n=4, method="inclusive") if len(values) > 1 else 3 * values
+    return {"lower_quartile": significant(lower), "upper_quartile": significant(upper)}
 
 
 def _ask(
