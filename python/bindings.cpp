@@ -493,7 +493,8 @@ void bind_tables(nb::module_& m) {
         .def_ro("kinematic_viscosity", &fontana_derived::kinematic_viscosity)
         .def_ro("speed_of_sound", &fontana_derived::speed_of_sound)
         .def_ro("frame_duration", &fontana_derived::frame_duration)
-        .def_ro("self_density", &fontana_derived::self_density);
+        .def_ro("self_density", &fontana_derived::self_density)
+        .def_ro("particle_radius", &fontana_derived::particle_radius);
     nb::class_<fontana_time_step_limits>(m, "TimeStepLimits")
         .def_ro("advection", &fontana_time_step_limits::advection)
         .def_ro("acceleration", &fontana_time_step_limits::acceleration)

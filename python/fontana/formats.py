@@ -38,7 +38,7 @@ def write_frame(simulation: _core.Simulation, path: Path, format: str) -> tuple[
 
 def _particle_radius(simulation: _core.Simulation) -> float:
     """Half the distance of particles at rest, which is half the support radius; in the scene's unit, as positions."""
-    return 0.25 * simulation.derived().support_radius / simulation.get("time.simulation_scale")
+    return simulation.derived().particle_radius
 
 
 def read_frame(path: str | Path) -> dict[str, np.ndarray]:

@@ -19,6 +19,7 @@
 struct fontana_simulation {
     fontana::Simulation simulation;
     std::string text;  // the last string given out
+    std::vector<std::byte> state;
     std::vector<fontana::ProfileRow> profile;
     std::vector<fontana_kernel_profile> profile_view;
 };
@@ -374,6 +375,25 @@ fontana_status fontana_load_checkpoint(fontana_simulation* simulation, const cha
     return guarded([&] {
         require(path, "path");
         simulation_of(simulation).load_checkpoint(path);
+    });
+}
+
+fontana_status fontana_save_state(fontana_simulation* simulation, const void** data, size_t* bytes) {
+    return guarded([&] {
+        require(data, "data");
+        require(bytes, "bytes");
+        fontana::Simulation& s = simulation_of(simulation);
+        simulation->state.clear();
+        s.save_state(simulation->state);
+        *data = simulation->state.data();
+        *bytes = simulation->state.size();
+    });
+}
+
+fontana_status fontana_load_state(fontana_simulation* simulation, const void* data, size_t bytes) {
+    return guarded([&] {
+        if (bytes) require(data, "data");
+        simulation_of(simulation).load_state(data, bytes);
     });
 }
 

@@ -97,6 +97,7 @@ typedef struct fontana_derived {
     double speed_of_sound;      /* m/s, sqrt of the pressure constant */
     double frame_duration;      /* s */
     double self_density;        /* kg/m^3: what one particle alone contributes to its own density */
+    double particle_radius;     /* m of the scene, half the distance at rest: Houdini's pscale */
 } fontana_derived;
 FONTANA_API fontana_status fontana_derive(fontana_simulation*, fontana_derived* out);
 
@@ -251,6 +252,9 @@ FONTANA_API fontana_status fontana_save_checkpoint(fontana_simulation*, const ch
 FONTANA_API fontana_status fontana_load_checkpoint(fontana_simulation*, const char* path);
 FONTANA_API fontana_status fontana_checkpoint_info(const char* path, int64_t* frame, uint64_t* particle_count,
                                                    char* tag, size_t tag_room);
+/* The same in memory, for a host that goes back in time. `*data` belongs to the simulation until its next save. */
+FONTANA_API fontana_status fontana_save_state(fontana_simulation*, const void** data, size_t* bytes);
+FONTANA_API fontana_status fontana_load_state(fontana_simulation*, const void* data, size_t bytes);
 /* For the files a host writes itself: same guarantee. `hash` (may be NULL) gets the content's 64-bit hash. */
 FONTANA_API fontana_status fontana_publish_file(const char* path, const void* data, size_t bytes, uint64_t* hash);
 FONTANA_API uint64_t fontana_hash(const void* data, size_t bytes);

@@ -315,7 +315,7 @@ void Simulation::read_attribute(const std::string& name, void* out, std::size_t 
 
 void Simulation::write_bgeo(const std::string& path) {
     const std::size_t count = particle_count();
-    const double radius = 0.5 * sampling_distance(parameters) / parameters.time_simulation_scale;  // pscale is a radius
+    const double radius = derive(parameters).particle_radius;  // pscale is a radius
     std::vector<float> position(3 * count), velocity(3 * count), density(count), pressure(count), mass(count);
     std::vector<float> pscale(count, static_cast<float>(radius));
     std::vector<std::int32_t> id(count);

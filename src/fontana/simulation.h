@@ -10,6 +10,7 @@
 
 #include "backends/backend.h"
 #include "fontana.h"
+#include "io/checkpoint.h"
 #include "scene/collider.h"
 #include "scene/emitter.h"
 #include "scene/parameters.h"
@@ -61,6 +62,9 @@ class Simulation {
 
     void save_checkpoint(const std::string& path, const std::string& tag);
     void load_checkpoint(const std::string& path);
+    // The same in memory; appends to `out`.
+    void save_state(std::vector<std::byte>& out);
+    void load_state(const void* data, std::size_t bytes);
 
     void check() const;
     const DeviceInfo& device() { return solver().backend().device(); }
@@ -80,6 +84,9 @@ class Simulation {
     void account_for(const SubstepReport& report);
     fontana_frame_report finish_frame(double seconds);
     double scene_spacing() const;  // in units of the scene
+    template <typename Use>
+    void with_sections(CheckpointWriter& writer, const Use& use);
+    void restore(const Checkpoint& checkpoint);
 
     std::vector<Collider> colliders_;
     std::vector<Emitter> emitters_;

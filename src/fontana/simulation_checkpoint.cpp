@@ -28,12 +28,12 @@ void check_ids(const std::vector<std::uint32_t>& ids) {
 
 }  // namespace
 
-void Simulation::save_checkpoint(const std::string& path, const std::string& tag) {
+template <typename Use>
+void Simulation::with_sections(CheckpointWriter& writer, const Use& use) {
     const ParticleState state = solver().particles().download();
     RunState run = run_;
     run.grid = solver().neighborhood().shape();
     const std::uint64_t particle_count = state.position.size();
-    CheckpointWriter writer(path, tag);
     writer.section("run", &run, sizeof run);
     writer.section("particle_count", &particle_count, sizeof particle_count);
     writer.section("emitted_batches", emitted_batches_);
@@ -44,12 +44,31 @@ void Simulation::save_checkpoint(const std::string& path, const std::string& tag
     writer.section("packed_velocity", state.packed_velocity);
     writer.section("acceleration", state.acceleration);
     writer.section("force", state.force_by_id);
-    writer.publish();
+    use();
+}
+
+void Simulation::save_checkpoint(const std::string& path, const std::string& tag) {
+    CheckpointWriter writer(path, tag);
+    with_sections(writer, [&] { writer.publish(); });
+}
+
+void Simulation::save_state(std::vector<std::byte>& out) {
+    CheckpointWriter writer("in memory");
+    with_sections(writer, [&] { writer.append_to(out); });
 }
 
 void Simulation::load_checkpoint(const std::string& path) {
     require_no_progress();
-    const Checkpoint checkpoint = Checkpoint::load(path);
+    restore(Checkpoint::load(path));
+}
+
+void Simulation::load_state(const void* data, std::size_t bytes) {
+    require_no_progress();
+    restore(Checkpoint::parse(data, bytes, "the state in memory"));
+}
+
+void Simulation::restore(const Checkpoint& checkpoint) {
+    const std::string& path = checkpoint.path();
     RunState run;
     std::uint64_t n = 0;
     checkpoint.copy_section("run", &run, sizeof run);

@@ -38,8 +38,13 @@ class CheckpointWriter {
     // old file is read once. Throws Error(FONTANA_IO_ERROR), also if the checkpoint is in place but perhaps not on
     // disk.
     void publish();
+    // The same bytes, appended to `out`.
+    void append_to(std::vector<std::byte>& out) const;
 
  private:
+    template <typename Output>
+    void write_to(Output& output) const;
+
     struct Section {
         std::string name;
         const void* data;
@@ -56,10 +61,14 @@ class Checkpoint {
     // asked for. Throws Error: FONTANA_BAD_INPUT for damage or a newer format, FONTANA_IO_ERROR if unreadable.
     static Checkpoint load(const std::string& path);
 
+    // Of the bytes of one; `name` stands for the path in sentences. Throws Error(FONTANA_BAD_INPUT) for damage.
+    static Checkpoint parse(const void* data, std::size_t bytes, const std::string& name);
+
     // The same, but takes `path`.previous if `path` cannot be used. `*note` is then a sentence for the user that says
     // so and why, else empty.
     static Checkpoint load_newest(const std::string& path, std::string* note);
 
+    const std::string& path() const { return path_; }
     const std::string& tag() const { return tag_; }
     bool has(const std::string& name) const { return sections_.count(name) != 0; }
     // Throws Error(FONTANA_BAD_INPUT) if there is none of that name.
@@ -68,6 +77,9 @@ class Checkpoint {
     void copy_section(const std::string& name, void* out, std::size_t bytes) const;
 
  private:
+    template <typename Input>
+    static Checkpoint read(Input& input);
+
     std::string path_;
     std::string tag_;
     std::unordered_map<std::string, std::vector<std::byte>> sections_;

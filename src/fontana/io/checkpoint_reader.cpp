@@ -14,7 +14,8 @@ using checkpoint::Footer;
 using checkpoint::Header;
 using checkpoint::TableEntry;
 
-void check_identity(const InputFile& file, const Header& header) {
+template <typename Input>
+void check_identity(const Input& file, const Header& header) {
     if (!std::equal(std::begin(checkpoint::magic), std::end(checkpoint::magic), header.magic)) {
         file.damaged("is not a Fontana checkpoint: it does not start with 'FONTANA'");
     }
@@ -29,10 +30,11 @@ void check_identity(const InputFile& file, const Header& header) {
     if (header.format_version == 0) file.damaged("is damaged: there is no checkpoint format 0");
 }
 
-// Reads a checkpoint from front to back and checks every byte of it.
+// Reads a checkpoint from front to back and checks every byte of it. Input is an InputFile or an InputMemory.
+template <typename Input>
 class Scanner {
  public:
-    explicit Scanner(const std::string& path) : file_(path) {}
+    explicit Scanner(Input& input) : file_(input) {}
 
     void read_header() {
         read(&header_, sizeof header_, "the header");
@@ -82,7 +84,7 @@ class Scanner {
         return std::string(std::begin(entry.name), end);
     }
 
-    const InputFile& file() const { return file_; }
+    const Input& file() const { return file_; }
     const std::string& tag() const { return tag_; }
     const std::vector<TableEntry>& table() const { return table_; }
 
@@ -92,7 +94,7 @@ class Scanner {
         content_hash_.update(data, bytes);
     }
 
-    InputFile file_;
+    Input& file_;
     Header header_ = {};
     std::string tag_;
     std::vector<TableEntry> table_;
@@ -102,7 +104,8 @@ class Scanner {
 }  // namespace
 
 bool is_valid_checkpoint(const std::string& path) try {
-    Scanner scanner(path);
+    InputFile file(path);
+    Scanner<InputFile> scanner(file);
     scanner.read_header();
     std::vector<std::byte> block(std::min<std::uint64_t>(scanner.file().size(), 1u << 20));
     for (const TableEntry& entry : scanner.table()) {
@@ -120,11 +123,12 @@ bool is_valid_checkpoint(const std::string& path) try {
     return false;
 }
 
-Checkpoint Checkpoint::load(const std::string& path) {
-    Scanner scanner(path);
+template <typename Input>
+Checkpoint Checkpoint::read(Input& input) {
+    Scanner<Input> scanner(input);
     scanner.read_header();
     Checkpoint checkpoint;
-    checkpoint.path_ = path;
+    checkpoint.path_ = scanner.file().path();
     checkpoint.tag_ = scanner.tag();
     for (const TableEntry& entry : scanner.table()) {
         const auto [place, is_first] = checkpoint.sections_.try_emplace(scanner.name_of(entry));
@@ -137,6 +141,16 @@ Checkpoint Checkpoint::load(const std::string& path) {
     }
     scanner.read_footer();
     return checkpoint;
+}
+
+Checkpoint Checkpoint::load(const std::string& path) {
+    InputFile file(path);
+    return read(file);
+}
+
+Checkpoint Checkpoint::parse(const void* data, std::size_t bytes, const std::string& name) {
+    InputMemory memory(data, bytes, name);
+    return read(memory);
 }
 
 Checkpoint Checkpoint::load_newest(const std::string& path, std::string* note) {

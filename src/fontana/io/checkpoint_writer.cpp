@@ -70,6 +70,22 @@ checkpoint::Header make_header(const std::string& tag, const std::vector<checkpo
     return header;
 }
 
+// What AtomicFile is to a file, to memory.
+class MemoryOutput {
+ public:
+    explicit MemoryOutput(std::vector<std::byte>& out) : out_(out) {}
+    void write(const void* data, std::size_t bytes) {
+        const auto* first = static_cast<const std::byte*>(data);
+        out_.insert(out_.end(), first, first + bytes);
+        hash_.update(data, bytes);
+    }
+    std::uint64_t hash() const { return hash_.value(); }
+
+ private:
+    std::vector<std::byte>& out_;
+    Hash64 hash_;
+};
+
 }  // namespace
 
 std::string previous_checkpoint(const std::string& path) { return path + ".previous"; }
@@ -92,20 +108,28 @@ void CheckpointWriter::section(const std::string& name, const void* data, std::s
     sections_.push_back({name, data, bytes});
 }
 
-void CheckpointWriter::publish() {
+template <typename Output>
+void CheckpointWriter::write_to(Output& output) const {
     using namespace checkpoint;
     std::vector<TableEntry> table;
     for (const Section& section : sections_) table.push_back(table_entry(section));
     const Header header = make_header(tag_, table);
+    output.write(&header, sizeof header);
+    output.write(tag_.data(), tag_.size());
+    output.write(table.data(), table.size() * sizeof(TableEntry));
+    for (const Section& section : sections_) output.write(section.data, section.bytes);
+    const Footer footer = {header.file_bytes, output.hash()};
+    output.write(&footer, sizeof footer);
+}
 
+void CheckpointWriter::append_to(std::vector<std::byte>& out) const {
+    MemoryOutput output(out);
+    write_to(output);
+}
+
+void CheckpointWriter::publish() {
     AtomicFile file(path_);
-    file.write(&header, sizeof header);
-    file.write(tag_.data(), tag_.size());
-    file.write(table.data(), table.size() * sizeof(TableEntry));
-    for (const Section& section : sections_) file.write(section.data, section.bytes);
-    const Footer footer = {header.file_bytes, file.hash()};
-    file.write(&footer, sizeof footer);
-
+    write_to(file);
     file.finish();
     if (is_valid_checkpoint(path_)) keep_as_previous(path_);
     file.publish();

@@ -12,6 +12,16 @@
 #include "util/error.h"
 
 namespace fontana {
+namespace {
+
+template <typename Input>
+void require_left(const Input& input, std::uint64_t count, std::uint64_t item_bytes, const std::string& what) {
+    if (count == 0 || item_bytes == 0 || count <= input.left() / item_bytes) return;
+    input.damaged("is cut short or damaged: " + what + " should have " + std::to_string(count) + " times " +
+                  std::to_string(item_bytes) + " bytes, but " + std::to_string(input.left()) + " bytes are left");
+}
+
+}  // namespace
 
 InputFile::InputFile(std::string path) : path_(std::move(path)) {
     // O_NONBLOCK: opening a pipe must not wait for its writer; the check below then refuses it.
@@ -29,9 +39,7 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
 InputFile::~InputFile() { close(descriptor_); }
 
 void InputFile::require(std::uint64_t count, std::uint64_t item_bytes, const std::string& what) const {
-    if (count == 0 || item_bytes == 0 || count <= left_ / item_bytes) return;
-    damaged("is cut short or damaged: " + what + " should have " + std::to_string(count) + " times " +
-            std::to_string(item_bytes) + " bytes, but " + std::to_string(left_) + " bytes are left");
+    require_left(*this, count, item_bytes, what);
 }
 
 void InputFile::read(void* data, std::size_t bytes, const std::string& what) {
@@ -56,5 +64,18 @@ void InputFile::skip(std::uint64_t bytes, const std::string& what) {
 }
 
 void InputFile::damaged(const std::string& trouble) const { fail(FONTANA_BAD_INPUT, "'" + path_ + "' " + trouble); }
+
+void InputMemory::require(std::uint64_t count, std::uint64_t item_bytes, const std::string& what) const {
+    require_left(*this, count, item_bytes, what);
+}
+
+void InputMemory::read(void* data, std::size_t bytes, const std::string& what) {
+    require(bytes, 1, what);
+    std::copy_n(next_, bytes, static_cast<char*>(data));
+    next_ += bytes;
+    left_ -= bytes;
+}
+
+void InputMemory::damaged(const std::string& trouble) const { fail(FONTANA_BAD_INPUT, path_ + " " + trouble); }
 
 }  // namespace fontana

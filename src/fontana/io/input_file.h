@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 namespace fontana {
 
@@ -33,6 +34,25 @@ class InputFile {
     int descriptor_ = -1;
     std::uint64_t size_ = 0;
     std::uint64_t left_ = 0;
+};
+
+// The same of bytes in memory; `name` stands for the path in sentences.
+class InputMemory {
+ public:
+    InputMemory(const void* data, std::size_t bytes, std::string name)
+        : path_(std::move(name)), next_(static_cast<const char*>(data)), size_(bytes), left_(bytes) {}
+
+    const std::string& path() const { return path_; }
+    std::uint64_t size() const { return size_; }
+    std::uint64_t left() const { return left_; }
+    void require(std::uint64_t count, std::uint64_t item_bytes, const std::string& what) const;
+    void read(void* data, std::size_t bytes, const std::string& what);
+    [[noreturn]] void damaged(const std::string& trouble) const;
+
+ private:
+    std::string path_;
+    const char* next_;
+    std::uint64_t size_, left_;
 };
 
 }  // namespace fontana

@@ -113,6 +113,7 @@ fontana_derived derive(const Parameters& p) {
     const double own_value =
         uses_spline(p) ? spline_scale(p, support) : smoothing_scales(support).poly6 * std::pow(support, 6);
     derived.self_density = derived.particle_mass * own_value;
+    derived.particle_radius = 0.5 * sampling_distance(p) / p.time_simulation_scale;
     return derived;
 }
 

@@ -96,6 +96,7 @@ void Particles::upload(const ParticleState& state) {
     reserve(state.position.size());
     set_force(state.force_by_id);  // what needs memory comes first: if there is none, the old particles stay
     count_ = state.position.size();
+    if (!count_) return;  // there may not be any buffers yet
     write_all(backend_, *position_, state.position);
     write_all(backend_, *velocity_, state.velocity);
     write_all(backend_, *id_, state.id);

@@ -1,0 +1,26 @@
+// Of the double, not of the HDK: houdini/double/PROVENANCE.md.
+#pragma once
+
+#include <vector>
+
+#include "GA/GA_Types.h"
+
+class GA_Detail;
+
+class GA_Primitive {
+ public:
+    GA_Primitive(const GA_Detail& detail, GA_Offset first_vertex, GA_Size vertex_count, bool closed);
+    GA_PrimitiveTypeId getTypeId() const { return GA_PRIMPOLY; }
+    GA_Size getVertexCount() const { return vertex_count_; }
+    GA_Offset getPointOffset(GA_Size i) const;
+
+    // The double's own.
+    GA_Offset first_vertex() const { return first_vertex_; }
+    bool is_closed() const { return closed_; }
+
+ private:
+    const GA_Detail* detail_;
+    GA_Offset first_vertex_;
+    GA_Size vertex_count_;
+    bool closed_;
+};

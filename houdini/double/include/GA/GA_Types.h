@@ -1,0 +1,30 @@
+// Of the double, not of the HDK: houdini/double/PROVENANCE.md.
+#pragma once
+
+#include "SYS/SYS_Types.h"
+
+// Indices count what is there; offsets are places in memory, and deleting leaves gaps among them.
+using GA_Size = exint;
+using GA_Index = exint;
+using GA_Offset = exint;
+using GA_PageNum = exint;
+using GA_DataId = int64;
+
+constexpr GA_Offset GA_INVALID_OFFSET = -1;
+constexpr GA_DataId GA_INVALID_DATAID = -1;
+constexpr GA_Size GA_PAGE_SIZE = 1024;
+
+enum GA_AttributeOwner { GA_ATTRIB_VERTEX, GA_ATTRIB_POINT, GA_ATTRIB_PRIMITIVE, GA_ATTRIB_GLOBAL };
+constexpr GA_AttributeOwner GA_ATTRIB_DETAIL = GA_ATTRIB_GLOBAL;
+enum GA_Storage { GA_STORE_INT32, GA_STORE_INT64, GA_STORE_REAL32, GA_STORE_REAL64 };
+enum GA_PrimitiveTypeId { GA_PRIMPOLY = 1 };
+
+class GA_Defaults {
+ public:
+    explicit GA_Defaults(double value) : value_(value) {}
+    explicit GA_Defaults(int value) : value_(value) {}
+    double value() const { return value_; }
+
+ private:
+    double value_;
+};

@@ -1,0 +1,10 @@
+// Of the double, not of the HDK: houdini/double/PROVENANCE.md.
+#pragma once
+
+#include "SYS/SYS_Version.h"
+#if SYS_VERSION_MAJOR_INT < 21
+#error "OP_DataTypes.h came with Houdini 21"
+#endif
+
+using OP_InputIdx = int;
+using OP_OutputIdx = int;

@@ -1,0 +1,6 @@
+// Of the double, not of the HDK: houdini/double/PROVENANCE.md.
+#pragma once
+
+#include "UT/UT_Error.h"
+
+using OP_ERROR = UT_ErrorSeverity;

@@ -1,0 +1,23 @@
+// Of the double, not of the HDK: houdini/double/PROVENANCE.md.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "OP/OP_Operator.h"
+
+class OP_OperatorTable {
+ public:
+    bool addOperator(OP_Operator* entry);
+    OP_Operator* getOperator(const UT_StringRef& name) const;
+
+    // The double's own.
+    const std::map<std::string, std::unique_ptr<OP_Operator>>& operators() const { return operators_; }
+
+ private:
+    std::map<std::string, std::unique_ptr<OP_Operator>> operators_;
+};
+
+// What Houdini looks for in a plugin.
+extern "C" SYS_VISIBILITY_EXPORT void newSopOperator(OP_OperatorTable* table);

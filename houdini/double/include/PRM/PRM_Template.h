@@ -1,0 +1,35 @@
+// Of the double, not of the HDK: houdini/double/PROVENANCE.md.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "PRM/PRM_ChoiceList.h"
+#include "SYS/SYS_Types.h"
+
+class PRM_Template;
+using PRM_Callback = int (*)(void* data, int index, fpreal64 time, const PRM_Template* parm);
+
+// A row of a panel. A list of them ends with one that was made without arguments.
+class PRM_Template {
+ public:
+    enum class Kind { end, number, whole, toggle, ordinal, text, button, multi, ornament };
+
+    PRM_Template() = default;
+    const char* getToken() const { return name.c_str(); }
+    const char* getLabel() const { return label.c_str(); }
+    int getVectorSize() const { return size; }
+
+    // The double's own: what the dialog script said.
+    Kind kind = Kind::end;
+    std::string name, label, folder, help, disable_when;
+    int size = 1;
+    std::vector<std::string> defaults;
+    std::vector<std::pair<std::string, std::string>> menu;  // token, label
+    double minimum = 0.0, maximum = 0.0;
+    bool is_minimum_strict = false, is_maximum_strict = false, has_range = false;
+    std::vector<PRM_Template> children;  // of a multiparm; their names have a #
+    PRM_Callback callback = nullptr;
+    PRM_ChoiceList* choices = nullptr;
+};
