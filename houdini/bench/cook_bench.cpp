@@ -11,10 +11,12 @@
 //   collider TYPE FLIP X Y Z RADIUS CUTOFF THICKNESS    for the library
 //   node_number NAME COMPONENT VALUE     parameters of the node, menus as numbers, colliders among them
 //
-// Prints one JSON object: seconds of each pair, and whether both ended with the same positions, bit for bit.
+// Prints one JSON object: seconds of each pair, by the wall and of all threads, and whether both ended with the same
+// positions, bit for bit.
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -130,10 +132,18 @@ struct Repeats {
     double seconds = 5.0;
 };
 
-double clock_seconds(const std::function<void()>& work) {
+// Wall time, and the time of all threads of this process: other programs disturb the second less.
+struct Taken {
+    double wall = 0.0, processor = 0.0;
+};
+
+Taken clock_seconds(const std::function<void()>& work) {
     const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t processor_begin = std::clock();
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const std::clock_t processor_end = std::clock();
+    return {std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+            static_cast<double>(processor_end - processor_begin) / CLOCKS_PER_SEC};
 }
 
 bool same_positions(const GU_Detail& detail, const std::vector<float>& position) {
@@ -142,24 +152,28 @@ bool same_positions(const GU_Detail& detail, const std::vector<float>& position)
            std::memcmp(points.data(), position.data(), position.size() * sizeof(float)) == 0;
 }
 
-void print_seconds(const char* name, const std::vector<double>& seconds) {
-    std::printf("\"%s\": [", name);
-    for (std::size_t k = 0; k < seconds.size(); ++k) std::printf("%s%.9g", k ? ", " : "", seconds[k]);
+void print_seconds(const std::string& name, const std::vector<Taken>& taken, double Taken::* which) {
+    std::printf("\"%s\": [", name.c_str());
+    for (std::size_t k = 0; k < taken.size(); ++k) std::printf("%s%.9g", k ? ", " : "", taken[k].*which);
     std::printf("], ");
+}
+
+void print_taken(const std::string& name, const std::vector<Taken>& taken) {
+    print_seconds(name + "_seconds", taken, &Taken::wall);
+    print_seconds(name + "_processor_seconds", taken, &Taken::processor);
 }
 
 // Frame 1 shows what came in; each later one is a step. Who goes first changes from pair to pair.
 void measure(Node& node, Library& library, const Repeats& repeats) {
-    std::vector<double> node_seconds, library_seconds;
+    std::vector<Taken> of_node, of_library;
     double total = 0.0;
     int frame = 1;
     node.cook(frame);
-    while (static_cast<int>(node_seconds.size()) < repeats.at_most &&
-           (node_seconds.empty() || total < repeats.seconds)) {
+    while (static_cast<int>(of_node.size()) < repeats.at_most && (of_node.empty() || total < repeats.seconds)) {
         ++frame;
         const auto cook = [&] { node.cook(frame); };
         const auto step = [&] { library.step(); };
-        double node_time, library_time;
+        Taken node_time, library_time;
         if (frame % 2) {
             node_time = clock_seconds(cook);
             library_time = clock_seconds(step);
@@ -168,13 +182,13 @@ void measure(Node& node, Library& library, const Repeats& repeats) {
             node_time = clock_seconds(cook);
         }
         if (frame - 1 <= repeats.warm_up) continue;
-        node_seconds.push_back(node_time);
-        library_seconds.push_back(library_time);
-        total += node_time + library_time;
+        of_node.push_back(node_time);
+        of_library.push_back(library_time);
+        total += node_time.wall + library_time.wall;
     }
     std::printf("{");
-    print_seconds("node_seconds", node_seconds);
-    print_seconds("library_seconds", library_seconds);
+    print_taken("node", of_node);
+    print_taken("library", of_library);
     std::printf("\"same_positions\": %s}\n", same_positions(node.cook(frame), library.position()) ? "true" : "false");
 }
 

@@ -104,9 +104,8 @@ def test_a_plugin_goes_into_its_folder(tool, tmp_path):
     assert (folder / "fontana/22.0/dso/BUILD.txt").exists()
 
 
-def test_a_plugin_that_cannot_be_shipped_is_refused(tool, tmp_path):
-    plugin = tmp_path / "fontana_houdini.so"
-    plugin.write_bytes(b"\x7fELF " + tool.DOUBLE_MARK)
+def test_a_plugin_that_cannot_be_shipped_is_refused(tool, native_build, tmp_path):
+    plugin = native_build("fontana_houdini")
     for version, path, sentence in (
         ("21.0", plugin, "built against the double"),
         ("21.5", plugin, "expected one of 20.5, 21.0, 22.0"),

@@ -54,7 +54,8 @@ def run_driver(
     repeats: tuple[int, int, float],
     threads: int,
 ) -> dict:
-    """Seconds of frames through the node and through the library, as lists "node_seconds" and "library_seconds".
+    """Seconds of frames through the node and through the library, as lists "node_seconds" and "library_seconds"; and
+    "node_processor_seconds", "library_processor_seconds": the time of all threads.
 
     `repeats`: frames of warming up, the most pairs, and seconds after which no pair is begun. Raises InternalError
     where the program fails, or where both did not end with the same positions.

@@ -8,7 +8,7 @@ from fontana.bench._machine import load_remark
 from fontana.bench._schemes import SCHEMES, THESIS_HARDWARE, gpu_remark
 from fontana.bench._tables import failures
 from fontana.bench._text import print_table, short_number
-from fontana.runs.text import clock
+from fontana.runs.text import clock as clock_text
 
 # Seconds of the thesis's Tables 3 and 4, by scene and particle count, in the order of SCHEMES; of how many frames it
 # does not say.
@@ -36,7 +36,7 @@ def print_results(results: dict) -> None:
             columns = ["particles", *(scheme.name for scheme in SCHEMES)]
             title = f"{name}: seconds a frame in the node ({_TABLES[name]}: a run)"
             print_table(title, columns, [_line(name, row, _seconds_text) for row in rows])
-            title = f"{name}: what the node adds, percent of the frame without it"
+            title = f"{name}: what the node adds, percent by the clock, and of processor time"
             print_table(title, columns, [_line(name, row, _overhead_text) for row in rows])
     for remark in _remarks(results):
         click.echo(remark)
@@ -54,7 +54,7 @@ def _seconds_text(cell: dict, then: float | None) -> str:
     if cell["state"] == "measured":
         return short_number(cell["node_seconds"]["median"]) + beside
     if cell["state"] == "cut off":
-        return f"cut off, about {clock(cell['predicted_frame_seconds'])}{beside}"
+        return f"cut off, about {clock_text(cell['predicted_frame_seconds'])}{beside}"
     return cell["state"] + beside
 
 
@@ -62,7 +62,8 @@ def _overhead_text(cell: dict, then: float | None) -> str:
     if cell["state"] != "measured":
         return cell["state"]
     found = cell["overhead_percent"]
-    return f"{found['median']:+.1f} ({found['lower_quartile']:+.1f} to {found['upper_quartile']:+.1f})"
+    spread = f"({found['lower_quartile']:+.1f} to {found['upper_quartile']:+.1f})"
+    return f"{found['median']:+.1f} {spread}, {cell['overhead_processor_percent']['median']:+.1f}"
 
 
 def progress_text(cell: dict) -> str:
@@ -80,12 +81,17 @@ def _remarks(results: dict) -> list[str]:
         "scrubbing; Houdini's own work around a cook is not in it",
         "an overhead is the median of pairs of frames taken in turn, and half of the pairs lie between the numbers in "
         "brackets; at the end both had the same bytes",
+        "processor time is that of all threads, which other programs disturb less",
         f"in brackets beside the seconds: the thesis's ({THESIS_HARDWARE}), of a run whose length it does not give",
         "all pairs are cut off where two frames would take longer than the budget",
         f"CPU: {machine['cpu']}, {threads} thread{'s' * (threads != 1)}; {machine['os']}",
     ]
     if results["overhead_percent_100k"] is not None:
-        lines.append(f"largest overhead by the grid at 100,000 particles: {results['overhead_percent_100k']:.1f} %")
+        clock, processor = results["overhead_percent_100k"], results["overhead_processor_percent_100k"]
+        lines.append(
+            f"largest overhead by the grid at 100,000 particles: {clock:.1f} % by the clock, {processor:.1f} % of "
+            "processor time"
+        )
     lines += [remark for remark in (gpu_remark(results), load_remark(results)) if remark]
     lines += [f"failed: {reason}" for reason in failures(results)]
     if results["state"] == "interrupted":

@@ -21,7 +21,7 @@ from fontana.bench._timing import SUBSTEPS_PER_FRAME, significant, statistics
 from fontana.tables import suggestion
 
 WARM_UP_FRAMES = 2
-MOST_PAIRS = 15
+MOST_PAIRS = 30
 GOAL_COUNT = 100_000
 _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
 
@@ -104,8 +104,8 @@ def describe_results(counts: list[int], budget: float, scene_names: list[str], t
         "most_pairs": MOST_PAIRS,
     }
     scenes: dict[str, list] = {name: [] for name in scene_names}
-    head = {"benchmark": "houdini", "state": "running", "overhead_percent_100k": None}
-    return head | conditions | {"settings": settings, "scenes": scenes}
+    goal = {"overhead_percent_100k": None, "overhead_processor_percent_100k": None}
+    return {"benchmark": "houdini", "state": "running"} | goal | conditions | {"settings": settings, "scenes": scenes}
 
 
 def measure_all(results: dict, driver: tuple[Path, Path], missing: dict[str, str], publish: Callable[[], None]) -> None:
@@ -117,11 +117,12 @@ def measure_all(results: dict, driver: tuple[Path, Path], missing: dict[str, str
                 cell = _cell(scheme, name, rows, driver, missing, results["settings"])
                 rows[-1]["cells"][scheme.name] = cell
                 click.echo(f"{name}, {count:,} particles, {scheme.name}: {progress_text(cell)}", err=True)
-            results["overhead_percent_100k"] = largest_overhead(results)
+            for kind in ("overhead_percent", "overhead_processor_percent"):
+                results[f"{kind}_100k"] = largest_overhead(results, kind)
             publish()
 
 
-def largest_overhead(results: dict) -> float | None:
+def largest_overhead(results: dict, kind: str) -> float | None:
     """The largest median overhead of the grid at 100,000 particles, in percent; None before there is one."""
     cells = [
         row["cells"].get(scheme.name, {})
@@ -130,7 +131,7 @@ def largest_overhead(results: dict) -> float | None:
         for scheme in SCHEMES
         if row["particles"] == GOAL_COUNT and scheme.neighbors == "grid"
     ]
-    return max((cell["overhead_percent"]["median"] for cell in cells if "overhead_percent" in cell), default=None)
+    return max((cell[kind]["median"] for cell in cells if kind in cell), default=None)
 
 
 def _cell(
@@ -147,14 +148,15 @@ def _cell(
         heard = _ask(scheme, name, count, driver, (WARM_UP_FRAMES, MOST_PAIRS, budget), threads)
     except _core.FontanaError as error:
         return {"state": "failed", "reason": str(error)}
-    pairs = zip(heard["node_seconds"], heard["library_seconds"], strict=True)
-    overhead = [100.0 * (node / library - 1.0) for node, library in pairs]
-    return {
-        "state": "measured",
-        "node_seconds": statistics(heard["node_seconds"]),
-        "library_seconds": statistics(heard["library_seconds"]),
-        "overhead_percent": statistics(overhead) | _quartiles(overhead),
-    }
+    cell: dict = {"state": "measured"}
+    for kind in ("", "processor_"):
+        of_node, of_library = heard[f"node_{kind}seconds"], heard[f"library_{kind}seconds"]
+        pairs = zip(of_node, of_library, strict=True)
+        overhead = [100.0 * (node / max(library, 1e-6) - 1.0) for node, library in pairs]
+        cell[f"node_{kind}seconds"] = statistics(of_node)
+        cell[f"library_{kind}seconds"] = statistics(of_library)
+        cell[f"overhead_{kind}percent"] = statistics(overhead) | _quartiles(overhead)
+    return cell
 
 
 def _quartiles(values: list[float]) -> dict[str, float]:
