@@ -78,6 +78,75 @@ static void damage_changes_nothing(void) {
     fontana_destroy(twin);
 }
 
+/* A state in memory is a checkpoint without a file: it may be taken and put back any number of times. */
+static void a_state_in_memory_continues(const char* method) {
+    fontana_simulation* s = saved_fountain(method);
+    const void* data = NULL;
+    size_t bytes = 0;
+    OK(fontana_save_state(s, &data, &bytes));
+    void* kept = malloc(bytes);
+    CHECK(kept != NULL);
+    if (!kept) return;
+    memcpy(kept, data, bytes);
+    const uint64_t then = state_hash(s);
+    step_frames(s, 3);
+    const uint64_t later = state_hash(s);
+    for (int k = 0; k < 2; ++k) {
+        OK(fontana_load_state(s, kept, bytes));
+        CHECK(fontana_frame(s) == 3 && state_hash(s) == then);
+        step_frames(s, 3);
+        CHECK(state_hash(s) == later);
+    }
+    free(kept);
+    fontana_destroy(s);
+}
+
+static void a_damaged_state_changes_nothing(void) {
+    fontana_simulation* s = saved_fountain("mueller");
+    const uint64_t before = state_hash(s);
+    const void* data = NULL;
+    size_t bytes = 0;
+    OK(fontana_save_state(s, &data, &bytes));
+    unsigned char* copy = malloc(bytes);
+    CHECK(copy != NULL);
+    if (!copy) return;
+    memcpy(copy, data, bytes);
+    for (size_t k = 0; k < bytes; k += 1 + bytes / 200) {
+        copy[k] ^= 0x40;
+        BAD(fontana_load_state(s, copy, bytes), "the state in memory");
+        copy[k] ^= 0x40;
+        BAD(fontana_load_state(s, copy, k), "the state in memory");
+    }
+    BAD(fontana_load_state(s, NULL, 0), "the state in memory");
+    BAD(fontana_load_state(s, NULL, bytes), "data");
+    BAD(fontana_save_state(s, NULL, &bytes), "data");
+    BAD(fontana_save_state(s, &data, NULL), "bytes");
+    free(copy);
+    CHECK(state_hash(s) == before);
+    fontana_destroy(s);
+}
+
+/* Back to the beginning, and from there to another scene. */
+static void a_state_without_particles(void) {
+    fontana_simulation *s = make_scene(1), *twin = make_scene(1);
+    const void* data = NULL;
+    size_t bytes = 0;
+    OK(fontana_save_state(s, &data, &bytes));
+    OK(fontana_load_state(s, data, bytes));
+    add_block(s, 4);
+    step_frames(s, 2);
+    OK(fontana_load_state(s, data, bytes));
+    CHECK(fontana_particle_count(s) == 0 && fontana_frame(s) == 0);
+    OK(fontana_load_state(twin, data, bytes)); /* which has no buffers yet */
+    add_block(s, 3);
+    add_block(twin, 3);
+    step_frames(s, 2);
+    step_frames(twin, 2);
+    CHECK(fontana_particle_count(s) == 27 && state_hash(s) == state_hash(twin));
+    fontana_destroy(s);
+    fontana_destroy(twin);
+}
+
 static void another_scene_is_refused(void) {
     fontana_destroy(saved_fountain("mueller"));
     fontana_simulation* s = make_scene(1); /* without the emitter */
@@ -106,7 +175,12 @@ static void there_are_two_generations(void) {
 }
 
 void test_checkpoints(void) {
-    for (int k = 0; k < method_count; ++k) a_run_continues_bit_for_bit(methods[k]);
+    for (int k = 0; k < method_count; ++k) {
+        a_run_continues_bit_for_bit(methods[k]);
+        a_state_in_memory_continues(methods[k]);
+    }
+    a_damaged_state_changes_nothing();
+    a_state_without_particles();
     damage_changes_nothing();
     another_scene_is_refused();
     there_are_two_generations();

@@ -22,9 +22,9 @@ def hou(monkeypatch):
 
 
 @pytest.fixture(scope="session")
-def panels(native_build) -> dict[str, list[dict]]:
-    """The rows of each node's panel, as the plugin gives them to the double of the HDK."""
-    program, plugin = native_build("fontana_print_panels"), native_build("fontana_houdini")
+def panels(native_build) -> dict[str, dict]:
+    """Label, icon and parameters of each operator, as the plugin gives them to the double of the HDK."""
+    program, plugin = native_build("fontana_houdini_panels"), native_build("fontana_houdini")
     done = subprocess.run([program, plugin], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)

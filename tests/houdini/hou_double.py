@@ -211,7 +211,7 @@ class Parm:
             raise TypeError(f"{self._name}: {value!r}")
         self.value = value
         if self._is_list:
-            self._node.make_instances(self._name, int(value))
+            self._node.make_instances(int(value))
 
     def eval(self) -> object:
         return self.value
@@ -263,7 +263,7 @@ class Node:
         self._inputs: list[Node | None] = []
         self._parms: dict[str, Parm] = {}
         self._tuples: dict[str, ParmTuple] = {}
-        self._rows: list[dict] = []
+        self._instance_rows: list[dict] = []  # of the one list of instances that a panel has
         self.comment, self.flags = "", set()
 
     # Making nodes.
@@ -277,11 +277,11 @@ class Node:
         child = Node(self, type_name, unique, {"geo": "Sop"}.get(type_name))
         for parm, size in known.get(type_name, {}).items():
             child._add_parm(parm, size)
-        child._rows = panels.get(type_name, [])
-        for row in child._rows:
-            if not row["instance_of"]:
-                is_list = any(other["instance_of"] == row["name"] for other in child._rows)
-                child._add_parm(row["name"], row["size"], tuple(row["menu"]), is_list)
+        rows = panels[type_name]["parameters"] if type_name in panels else []
+        child._instance_rows = [row for row in rows if "#" in row["name"]]
+        for row in rows:
+            if "#" not in row["name"]:
+                child._add_parm(row["name"], row["size"], tuple(row["menu"]), row["type"] == "multiparm")
         self._children.append(child)
         return child
 
@@ -292,11 +292,10 @@ class Node:
         self._tuples[name] = ParmTuple(parms)
         self._parms |= {parm.name(): parm for parm in parms}
 
-    def make_instances(self, list_name: str, count: int) -> None:
-        for row in self._rows:
-            if row["instance_of"] == list_name:
-                for number in range(1, count + 1):
-                    self._add_parm(row["name"].replace("#", str(number)), row["size"], tuple(row["menu"]))
+    def make_instances(self, count: int) -> None:
+        for row in self._instance_rows:
+            for number in range(1, count + 1):
+                self._add_parm(row["name"].replace("#", str(number)), row["size"], tuple(row["menu"]))
 
     def destroy(self) -> None:
         self._parent._children.remove(self)
@@ -396,7 +395,7 @@ class _Playbar:
         self.playback_range = (first, last)
 
 
-panels: dict[str, list[dict]] = {}  # of the plugin's nodes; empty: the plugin is not loaded
+panels: dict[str, dict] = {}  # of the plugin's nodes; empty: the plugin is not loaded
 cooks: dict[str, object] = {}  # geometry by type: cook(node, frame)
 undos = types.SimpleNamespace(group=_Group, disabler=_Group)
 playbar = _Playbar()

@@ -10,7 +10,9 @@ int main(int argc, char** argv) try {
     const struct {
         const char* name;
         void (*run)();
-    } groups[] = {{"timeline", check_timeline}};
+    } groups[] = {{"timeline", check_timeline},     {"edits", check_edits}, {"faults", check_faults},
+                  {"attributes", check_attributes}, {"panel", check_panel}, {"source", check_source},
+                  {"session", check_session}};
     if (argc != 3) return std::fputs("houdini_test PLUGIN GROUP\n", stderr), 2;
     hdk_double::load_plugin(argv[1]);
     for (const auto& group : groups) {

@@ -29,6 +29,7 @@ BlockScene::BlockScene(int block_side, bool changes_with_time) : side(block_side
     set_int(*solver, "use_scene_rate", 0);
     set_float(*solver, "time_frame_rate", 240.0);
     add_collider(*solver, FONTANA_PLANE_Y);
+    set_float(*solver, "collider_centre1", floor_height, 1);
 }
 
 std::uint64_t hash_of(const GU_Detail& detail) {

@@ -8,7 +8,10 @@
 #include "hdk_double/hdk_double.h"
 #include "io/checks.h"
 
-// A block of particles falling onto a plane, on the cpu, in frames of few substeps.
+// Just above the lowest particles of a block, so that the floor matters from the first frame on.
+constexpr double floor_height = 0.055;
+
+// A block of particles on a floor, on the cpu, in frames of few substeps.
 class BlockScene {
  public:
     explicit BlockScene(int side = 5, bool changes_with_time = false);

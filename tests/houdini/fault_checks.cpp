@@ -1,0 +1,185 @@
+// Bad input, Esc, full memory, nodes on several threads.
+#include <GA/GA_Handle.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <thread>
+
+#include "checks.h"
+#include "scene.h"
+
+namespace {
+
+std::string line_of(SOP_Node& node, const std::string& name) {
+    const UT_InfoTree tree = hdk_double::info_of(node, 1);
+    for (const UT_InfoTree& child : tree.children())
+        for (const auto& [key, value] : child.rows())
+            if (key == name) return value;
+    return "";
+}
+
+void no_input() {
+    BlockScene scene;
+    scene.solver->setInput(0, nullptr);
+    hdk_double::cook(*scene.solver, 3);
+    CHECK(scene.solver->error() >= UT_ERROR_ABORT);
+    scene.solver->setInput(0, scene.source);
+    CHECK(hash_at(scene, 3) == played(3).back());
+}
+
+void an_empty_input_is_an_empty_frame() {
+    BlockScene scene(0);
+    CHECK(hdk_double::cook(*scene.solver, 5).getNumPoints() == 0);
+    CHECK(scene.solver->error() == UT_ERROR_NONE);
+    scene.side = 5;
+    scene.edit();
+    CHECK(hash_at(scene, 5) == played(5).back());
+}
+
+void a_position_that_is_no_number() {
+    hdk_double::Network network;
+    bool is_broken = true;
+    SOP_Node& source = network.create_geometry("block", [&](GU_Detail& detail, fpreal) {
+        add_block(detail, 5, 0.0f);
+        if (is_broken) detail.setPos3(detail.pointOffset(7), UT_Vector3(0.0f, std::nanf(""), 0.0f));
+    });
+    BlockScene scene;
+    scene.solver->setInput(0, &source);
+    hdk_double::cook(*scene.solver, 3);
+    CHECK(scene.solver->error() == UT_ERROR_ABORT);
+    CHECK(contains(sentences(*scene.solver), "particle 7 is not a finite number"));
+    is_broken = false;
+    source.forceRecook();
+    CHECK(hash_at(scene, 3) == played(3).back());
+}
+
+void a_value_out_of_bounds() {
+    BlockScene scene;
+    set_float(*scene.solver, "fluid_rest_density", -5.0);
+    hdk_double::cook(*scene.solver, 2);
+    CHECK(contains(sentences(*scene.solver), "fluid.rest_density"));
+    set_float(*scene.solver, "fluid_rest_density", 1000.0);
+    CHECK(hash_at(scene, 2) == played(2).back());
+}
+
+// The points that are left, in a detail with gaps and in one without.
+void deleted_points() {
+    hdk_double::Network network;
+    const auto build = [](GU_Detail& detail, bool with_gaps) {
+        add_block(detail, 12, 0.0f);  // more than a page
+        for (GA_Offset offset = 0; offset < 1500; offset += 7) detail.destroyPointOffset(offset);
+        if (with_gaps) return;
+        const std::vector<UT_Vector3> left = hdk_double::positions(detail);
+        detail.clearAndDestroy();
+        GA_Offset offset = detail.appendPointBlock(static_cast<GA_Size>(left.size()));
+        for (const UT_Vector3& position : left) detail.setPos3(offset++, position);
+    };
+    std::uint64_t hashes[2];
+    for (const bool with_gaps : {false, true}) {
+        SOP_Node& source = network.create_geometry(with_gaps ? "gaps" : "compact",
+                                                   [=](GU_Detail& detail, fpreal) { build(detail, with_gaps); });
+        BlockScene scene;
+        scene.solver->setInput(0, &source);
+        CHECK(hdk_double::cook(*scene.solver, 1).getNumPoints() == 12 * 12 * 12 - 215);
+        hashes[with_gaps] = hash_at(scene, 3);
+    }
+    CHECK(hashes[0] == hashes[1]);
+}
+
+void an_interrupted_jump_goes_on() {
+    BlockScene scene;
+    hdk_double::interrupt_after(60);
+    const GU_Detail& shown = hdk_double::cook(*scene.solver, 100000);
+    hdk_double::interrupt_after(-1);
+    CHECK(scene.solver->error() == UT_ERROR_WARNING);
+    CHECK(contains(sentences(*scene.solver), "of 100000"));
+    const int reached = std::atoi(line_of(*scene.solver, "Frame").c_str());
+    CHECK(reached >= 3 && reached < 61);
+    const std::vector<std::uint64_t> expected = played(reached + 3);
+    CHECK(hash_of(shown) == expected[static_cast<std::size_t>(reached - 1)]);
+    CHECK(hash_at(scene, reached + 3) == expected.back());
+}
+
+void an_interrupt_before_the_first_frame() {
+    BlockScene scene;
+    hdk_double::interrupt_after(1);
+    hdk_double::cook(*scene.solver, 50);
+    hdk_double::interrupt_after(-1);
+    CHECK(scene.solver->error() == UT_ERROR_WARNING);
+    CHECK(hash_at(scene, 4) == played(4).back());
+}
+
+// 4096 particles take some 300 kB a frame: of sixty frames a third fits.
+void the_memory_limit() {
+    const auto build = [](BlockScene& scene, int limit) {
+        set_int(*scene.solver, "memory_limit", limit);
+        set_int(*scene.solver, "time_substeps", 1);
+        set_float(*scene.solver, "time_frame_rate", 4000.0);
+        set_float(*scene.solver, "fluid_viscosity", 0.1);
+    };
+    BlockScene free(16), tight(16);
+    build(free, 4096);
+    build(tight, 6);
+    const std::uint64_t at_31 = hash_at(free, 31), at_60 = hash_at(free, 60);
+    CHECK(free.solver->error() == UT_ERROR_NONE);
+    CHECK(hash_at(tight, 60) == at_60);
+    CHECK(contains(sentences(*tight.solver), "the memory limit is reached: every frame in 4 is kept"));
+    const std::string history = line_of(*tight.solver, "History");
+    CHECK(std::atoi(history.c_str()) < 25 && (contains(history, "frames, 4.") || contains(history, "frames, 5.")));
+    CHECK(hash_at(tight, 31) == at_31);
+    CHECK(hash_at(tight, 60) == at_60);
+}
+
+void two_nodes_at_once() {
+    const std::vector<std::uint64_t> expected = played(20);
+    BlockScene first, second;
+    std::uint64_t hashes[2] = {};
+    std::thread thread([&] { hashes[0] = hash_at(first, 20); });
+    hashes[1] = hash_at(second, 20);
+    thread.join();
+    CHECK(hashes[0] == expected.back() && hashes[1] == expected.back());
+}
+
+void wait_until_cooking(const SOP_Node& node) {
+    while (!node.isCooking(true)) std::this_thread::yield();
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+}
+
+void a_cooking_node_is_not_deleted() {
+    BlockScene scene;
+    std::thread thread([&] { hdk_double::cook(*scene.solver, 1000000); });
+    wait_until_cooking(*scene.solver);
+    CHECK(!scene.network.destroy(*scene.solver));
+    hdk_double::interrupt_after(1);
+    thread.join();
+    hdk_double::interrupt_after(-1);
+    CHECK(contains(sentences(*scene.solver), "interrupted"));
+    CHECK(scene.network.destroy(*scene.solver));
+}
+
+void a_reset_ends_the_cook_under_way() {
+    BlockScene scene;
+    std::thread thread([&] { hdk_double::cook(*scene.solver, 1000000); });
+    wait_until_cooking(*scene.solver);
+    hdk_double::press(*scene.solver, "reset");
+    thread.join();
+    CHECK(contains(sentences(*scene.solver), "interrupted"));
+    CHECK(hash_at(scene, 4) == played(4).back());
+}
+
+}  // namespace
+
+void check_faults() {
+    no_input();
+    an_empty_input_is_an_empty_frame();
+    a_position_that_is_no_number();
+    a_value_out_of_bounds();
+    deleted_points();
+    an_interrupted_jump_goes_on();
+    an_interrupt_before_the_first_frame();
+    the_memory_limit();
+    two_nodes_at_once();
+    a_cooking_node_is_not_deleted();
+    a_reset_ends_the_cook_under_way();
+}
