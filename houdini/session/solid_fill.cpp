@@ -100,6 +100,29 @@ bool is_closed(const TriangleMesh& mesh) {
     return std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
 }
 
+std::vector<float> fill_where(const std::vector<LatticeBox>& boxes, double spacing,
+                              const std::function<bool(std::size_t, const float*)>& is_inside) {
+    std::vector<float> points;
+    for (std::size_t n = 0; n < boxes.size(); ++n) {
+        std::array<std::int64_t, 3> first, count;
+        double all = 1.0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            require_few((boxes[n].high[c] - boxes[n].low[c]) / spacing, spacing);
+            first[c] = first_column(boxes[n].low[c], spacing);
+            count[c] = std::max<std::int64_t>(0, first_column(boxes[n].high[c], spacing) - first[c]);
+            all *= static_cast<double>(count[c]);
+        }
+        require_few(all, spacing);
+        for (std::int64_t k = 0; k < count[0] * count[1] * count[2]; ++k) {
+            const std::array<std::int64_t, 3> index = {k % count[0], k / count[0] % count[1], k / count[0] / count[1]};
+            float point[3];
+            for (std::size_t c = 0; c < 3; ++c) point[c] = static_cast<float>(centre_of(first[c] + index[c], spacing));
+            if (is_inside(n, point)) points.insert(points.end(), point, point + 3);
+        }
+    }
+    return points;
+}
+
 std::vector<float> fill_solid(const TriangleMesh& mesh, double spacing) {
     std::vector<Crossing> crossings;
     for (const auto& triangle : mesh.triangles)

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace fontana::houdini {
@@ -21,5 +22,12 @@ bool is_closed(const TriangleMesh& mesh);
 // Lattice points inside, 3 floats each: multiples of `spacing` plus a half along each axis, so that a mesh that moves
 // does not drag its points along. Throws std::runtime_error where there would be more than 2^28 columns or points.
 std::vector<float> fill_solid(const TriangleMesh& mesh, double spacing);
+
+struct LatticeBox {
+    std::array<double, 3> low, high;
+};
+// The points of the same lattice in each box for which is_inside(number of the box, 3 floats) holds; the same limit.
+std::vector<float> fill_where(const std::vector<LatticeBox>& boxes, double spacing,
+                              const std::function<bool(std::size_t, const float*)>& is_inside);
 
 }  // namespace fontana::houdini

@@ -101,7 +101,7 @@ void SOP_FontanaSolver::make_points(GA_Size count) {
     if (!has_output_ || present > count) gdp->clearAndDestroy();
     const GA_Size missing = count - gdp->getNumPoints();
     if (missing > 0) gdp->appendPointBlock(missing);
-    gdp->addFloatTuple(GA_ATTRIB_POINT, "v", 3);
+    gdp->addFloatTuple(GA_ATTRIB_POINT, "v", 3)->setTypeInfo(GA_TYPE_VECTOR);
     gdp->addIntTuple(GA_ATTRIB_POINT, "id", 1, GA_Defaults(-1), nullptr, nullptr, GA_STORE_INT64);
     for (const char* name : {"density", "pressure", "pscale", "age"}) gdp->addFloatTuple(GA_ATTRIB_POINT, name, 1);
     if (has_output_ && present == count) return;
@@ -169,7 +169,7 @@ void SOP_FontanaSolver::fillInfoTreeNodeSpecific(UT_InfoTree& tree, const OP_Nod
     const auto line = [&](const char* name, const char* format, auto... values) {
         char text[200];
         std::snprintf(text, sizeof text, format, values...);
-        info->addProperties(name, text);
+        info->addProperties(name, static_cast<const char*>(text));
     };
     const fontana_frame_report& r = record->report;
     line("Frame", "%lld", static_cast<long long>(shown_frame_));

@@ -55,7 +55,12 @@ std::string quoted(const std::string& text) {
     return result + '"';
 }
 
-// "on the GPU" reads "On The Gpu" in no panel: words keep what they have, the first letter grows.
+// "m**2/s**2" as m^2/s^2.
+std::string as_written(std::string unit) {
+    for (std::size_t at; (at = unit.find("**")) != std::string::npos;) unit.replace(at, 2, "^");
+    return unit;
+}
+
 std::string capitalised(std::string text) {
     if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     return text;
@@ -92,7 +97,7 @@ std::string value_of(const PanelRow& row) {
 std::string row_text(const PanelRow& row) {
     const fontana_parameter& p = row.parameter;
     const std::string name = p.name;
-    const std::string label = std::string(p.label) + (*p.unit ? std::string(" (") + p.unit + ")" : "");
+    const std::string label = std::string(p.label) + (*p.unit ? " (" + as_written(p.unit) + ")" : "");
     std::string condition;
     if (name == "time.frame_rate") condition = " disablewhen \"{ use_scene_rate == 1 }\"";
     if (name == "solver.backend" || name == "solver.device") condition = " disablewhen \"{ use_gpu == 0 }\"";

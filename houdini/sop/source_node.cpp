@@ -36,7 +36,7 @@ void set_all(std::vector<Value>& values, std::size_t count, bool wanted, Value v
 void apply_panel(const SOP_FontanaSourceParms& parms, SourceParticles& particles) {
     const std::size_t count = particles.count();
     const UT_Vector3D added = parms.getVelocity();
-    if (particles.velocity.empty() && added != UT_Vector3D()) particles.velocity.assign(3 * count, 0.0f);
+    if (particles.velocity.empty() && added != UT_Vector3D(0.0, 0.0, 0.0)) particles.velocity.assign(3 * count, 0.0f);
     for (std::size_t k = 0; k < particles.velocity.size(); ++k)
         particles.velocity[k] += static_cast<float>(added(static_cast<unsigned>(k % 3)));
     set_all(particles.mass, count, parms.getSetMass() && parms.getMass() > 0.0, static_cast<float>(parms.getMass()));
@@ -53,7 +53,11 @@ void write(const SourceParticles& particles, GU_Detail& detail) {
         write_by_page(detail, GA_RWHandleV3(attribute), reinterpret_cast<const UT_Vector3F*>(values.data()));
     };
     vectors(detail.getP(), particles.position);
-    if (!particles.velocity.empty()) vectors(detail.addFloatTuple(GA_ATTRIB_POINT, "v", 3), particles.velocity);
+    if (!particles.velocity.empty()) {
+        GA_Attribute* velocity = detail.addFloatTuple(GA_ATTRIB_POINT, "v", 3);
+        velocity->setTypeInfo(GA_TYPE_VECTOR);
+        vectors(velocity, particles.velocity);
+    }
     const auto numbers = [&](const char* name, const std::vector<float>& values) {
         if (values.empty()) return;
         write_by_page(detail, GA_RWHandleF(detail.addFloatTuple(GA_ATTRIB_POINT, name, 1)), values.data());
@@ -68,14 +72,19 @@ void write(const SourceParticles& particles, GU_Detail& detail) {
     wholes(continuous_attribute, particles.continuous);
 }
 
+SourceParticles particles_of(const GU_Detail& input, const SOP_FontanaSourceParms& parms) {
+    if (has_vdb(input)) return particles_in_vdbs(input, parms.getParticleSpacing());
+    if (has_mesh(input)) return particles_in_mesh(input, parms.getParticleSpacing());
+    return particles_at_points(input, parms.getGroup().c_str());
+}
+
 void SourceVerb::cook(const CookParms& cookparms) const {
     const auto& parms = cookparms.parms<SOP_FontanaSourceParms>();
     GU_Detail* detail = cookparms.gdh().gdpNC();
     const GU_Detail* input = cookparms.inputGeo(0);
     if (!input) return detail->clearAndDestroy();
     try {
-        SourceParticles particles = has_mesh(*input) ? particles_in_mesh(*input, parms.getParticleSpacing())
-                                                     : particles_at_points(*input, parms.getGroup().c_str());
+        SourceParticles particles = particles_of(*input, parms);
         apply_panel(parms, particles);
         write(particles, *detail);
     } catch (const std::exception& error) {  // none may reach Houdini

@@ -1,4 +1,5 @@
-// fontana::source: points, or the inside of a closed mesh, as particles for the solver. A verb: it keeps nothing.
+// fontana::source: points, or the inside of a closed mesh or VDB, as particles for the solver. A verb: it keeps
+// nothing.
 #pragma once
 
 #include <SOP/SOP_Node.h>

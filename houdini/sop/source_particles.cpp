@@ -2,6 +2,8 @@
 
 #include <GA/GA_Handle.h>
 #include <GA/GA_Primitive.h>
+#include <GEO/GEO_PrimVDB.h>
+#include <UT/UT_BoundingBox.h>
 
 #include <cmath>
 #include <stdexcept>
@@ -54,7 +56,57 @@ std::vector<Value> read_attribute(const GU_Detail& detail, const GA_Range& range
     return values;
 }
 
+void require_spacing(double spacing) {
+    if (!(spacing > 0.0) || !std::isfinite(spacing))
+        throw std::runtime_error("the particle spacing is " + std::to_string(spacing) + "; expected metres above 0");
+}
+
+template <typename Use>
+void for_each_vdb(const GU_Detail& detail, const Use& use) {
+    for (GA_Index n = 0; n < detail.getNumPrimitives(); ++n) {
+        const GA_Primitive* primitive = detail.getPrimitiveByIndex(n);
+        if (primitive->getTypeId() == GA_PRIMVDB) use(*static_cast<const GEO_PrimVDB*>(primitive));
+    }
+}
+
+bool is_inside(const GEO_PrimVDB& vdb, const UT_Vector3& position) {
+    const fpreal value = vdb.getValueF(position);
+    return vdb.isSDF() ? value < 0.0 : value > 0.0;
+}
+
+LatticeBox lattice_box(const UT_BoundingBox& box) {
+    const auto number = [](fpreal32 value) { return static_cast<double>(value); };
+    return {{number(box.xmin()), number(box.ymin()), number(box.zmin())},
+            {number(box.xmax()), number(box.ymax()), number(box.zmax())}};
+}
+
 }  // namespace
+
+bool has_vdb(const GU_Detail& detail) {
+    bool found = false;
+    for_each_vdb(detail, [&](const GEO_PrimVDB&) { found = true; });
+    return found;
+}
+
+SourceParticles particles_in_vdbs(const GU_Detail& detail, double spacing) {
+    require_spacing(spacing);
+    std::vector<LatticeBox> boxes;
+    std::vector<const GEO_PrimVDB*> vdbs;
+    for_each_vdb(detail, [&](const GEO_PrimVDB& vdb) {
+        UT_BoundingBox box;
+        if (!vdb.getBBox(&box)) return;
+        vdbs.push_back(&vdb);
+        boxes.push_back(lattice_box(box));
+    });
+    SourceParticles particles;
+    particles.position = fill_where(boxes, spacing, [&](std::size_t k, const float* p) {
+        const UT_Vector3 position(p[0], p[1], p[2]);
+        for (std::size_t earlier = 0; earlier < k; ++earlier)
+            if (is_inside(*vdbs[earlier], position)) return false;  // it is there already
+        return is_inside(*vdbs[k], position);
+    });
+    return particles;
+}
 
 bool has_mesh(const GU_Detail& detail) {
     for (GA_Index n = 0; n < detail.getNumPrimitives(); ++n) {
@@ -77,8 +129,7 @@ SourceParticles particles_at_points(const GU_Detail& detail, const std::string& 
 }
 
 SourceParticles particles_in_mesh(const GU_Detail& detail, double spacing) {
-    if (!(spacing > 0.0) || !std::isfinite(spacing))
-        throw std::runtime_error("the particle spacing is " + std::to_string(spacing) + "; expected metres above 0");
+    require_spacing(spacing);
     const TriangleMesh mesh = triangulated(detail);
     for (const float x : mesh.position)
         if (!std::isfinite(x))

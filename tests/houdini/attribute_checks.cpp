@@ -23,6 +23,7 @@ void names_and_types() {
         const GA_Attribute* attribute = detail.findPointAttribute(e.name);
         CHECK(attribute && attribute->getTupleSize() == e.size && attribute->storage() == e.storage);
     }
+    CHECK(detail.findPointAttribute("v")->getTypeInfo() == GA_TYPE_VECTOR);
     const GA_ROHandleID id(&detail, GA_ATTRIB_POINT, "id");
     const GA_ROHandleF pscale(&detail, GA_ATTRIB_POINT, "pscale"), age(&detail, GA_ATTRIB_POINT, "age"),
         density(&detail, GA_ATTRIB_POINT, "density");

@@ -8,3 +8,4 @@ void check_attributes();
 void check_panel();
 void check_source();
 void check_session();
+void check_threads();

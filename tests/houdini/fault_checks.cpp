@@ -1,10 +1,7 @@
-// Bad input, Esc, full memory, nodes on several threads.
+// Bad input, Esc, full memory.
 #include <GA/GA_Handle.h>
 
-#include <chrono>
 #include <cmath>
-#include <memory>
-#include <thread>
 
 #include "checks.h"
 #include "scene.h"
@@ -131,43 +128,6 @@ void the_memory_limit() {
     CHECK(hash_at(tight, 60) == at_60);
 }
 
-void two_nodes_at_once() {
-    const std::vector<std::uint64_t> expected = played(20);
-    BlockScene first, second;
-    std::uint64_t hashes[2] = {};
-    std::thread thread([&] { hashes[0] = hash_at(first, 20); });
-    hashes[1] = hash_at(second, 20);
-    thread.join();
-    CHECK(hashes[0] == expected.back() && hashes[1] == expected.back());
-}
-
-void wait_until_cooking(const SOP_Node& node) {
-    while (!node.isCooking(true)) std::this_thread::yield();
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-}
-
-void a_cooking_node_is_not_deleted() {
-    BlockScene scene;
-    std::thread thread([&] { hdk_double::cook(*scene.solver, 1000000); });
-    wait_until_cooking(*scene.solver);
-    CHECK(!scene.network.destroy(*scene.solver));
-    hdk_double::interrupt_after(1);
-    thread.join();
-    hdk_double::interrupt_after(-1);
-    CHECK(contains(sentences(*scene.solver), "interrupted"));
-    CHECK(scene.network.destroy(*scene.solver));
-}
-
-void a_reset_ends_the_cook_under_way() {
-    BlockScene scene;
-    std::thread thread([&] { hdk_double::cook(*scene.solver, 1000000); });
-    wait_until_cooking(*scene.solver);
-    hdk_double::press(*scene.solver, "reset");
-    thread.join();
-    CHECK(contains(sentences(*scene.solver), "interrupted"));
-    CHECK(hash_at(scene, 4) == played(4).back());
-}
-
 }  // namespace
 
 void check_faults() {
@@ -179,7 +139,4 @@ void check_faults() {
     an_interrupted_jump_goes_on();
     an_interrupt_before_the_first_frame();
     the_memory_limit();
-    two_nodes_at_once();
-    a_cooking_node_is_not_deleted();
-    a_reset_ends_the_cook_under_way();
 }

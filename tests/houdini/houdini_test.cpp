@@ -10,9 +10,9 @@ int main(int argc, char** argv) try {
     const struct {
         const char* name;
         void (*run)();
-    } groups[] = {{"timeline", check_timeline},     {"edits", check_edits}, {"faults", check_faults},
-                  {"attributes", check_attributes}, {"panel", check_panel}, {"source", check_source},
-                  {"session", check_session}};
+    } groups[] = {{"timeline", check_timeline},     {"edits", check_edits},    {"faults", check_faults},
+                  {"attributes", check_attributes}, {"panel", check_panel},    {"source", check_source},
+                  {"session", check_session},       {"threads", check_threads}};
     if (argc != 3) return std::fputs("houdini_test PLUGIN GROUP\n", stderr), 2;
     hdk_double::load_plugin(argv[1]);
     for (const auto& group : groups) {

@@ -1,7 +1,9 @@
 // The source: what it makes of points and of a mesh, and how the solver takes it.
 #include <GA/GA_Handle.h>
+#include <GEO/GEO_PrimVDB.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "checks.h"
 #include "scene.h"
@@ -57,6 +59,26 @@ void an_open_mesh_is_refused() {
     });
     CHECK(scene.cook().getNumPoints() == 0);
     CHECK(scene.source.error() == UT_ERROR_ABORT && contains(sentences(scene.source), "the mesh is open"));
+}
+
+// A level set of a ball, and a fog that fills a slab through it.
+void vdbs_are_filled() {
+    const UT_BoundingBox box(UT_Vector3(-0.5f, -0.5f, -0.5f), UT_Vector3(0.5f, 0.5f, 0.5f));
+    const auto ball = [](const UT_Vector3& p) {
+        return std::sqrt(static_cast<double>(p.x() * p.x() + p.y() * p.y() + p.z() * p.z())) - 0.4;
+    };
+    const auto slab = [](const UT_Vector3& p) { return std::abs(p.y()) < 0.1f ? 1.0 : 0.0; };
+    SourceScene scene([&](GU_Detail& detail, fpreal) {
+        detail.append(std::make_unique<GEO_PrimVDB>(detail, box, true, ball));
+        detail.append(std::make_unique<GEO_PrimVDB>(detail, box, false, slab));
+    });
+    GA_Size expected = 0;
+    for (int k = 0; k < 20 * 20 * 20; ++k) {
+        const auto at = [](int index) { return 0.05f * (static_cast<float>(index - 10) + 0.5f); };
+        const UT_Vector3 p(at(k % 20), at(k / 20 % 20), at(k / 400));
+        expected += ball(p) < 0.0 || slab(p) > 0.0;
+    }
+    CHECK(expected > 2000 && scene.cook().getNumPoints() == expected);
 }
 
 void a_spacing_that_is_too_fine_is_refused() {
@@ -169,6 +191,7 @@ void check_source() {
     a_closed_mesh_is_filled();
     overlapping_parts_count_once();
     an_open_mesh_is_refused();
+    vdbs_are_filled();
     a_spacing_that_is_too_fine_is_refused();
     points_are_carried();
     one_emission();

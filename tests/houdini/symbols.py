@@ -3,7 +3,7 @@
 import subprocess
 import sys
 
-SHOWN = {"newSopOperator", "HoudiniDSOVersion"}
+SHOWN = {"newSopOperator", "HoudiniDSOVersion", "HoudiniGetTagInfo"}
 LINKER = {"_init", "_fini", "_edata", "_end", "__bss_start"}
 SANITIZERS = ("__asan", "__odr_asan", "__tsan")
 

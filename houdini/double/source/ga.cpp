@@ -32,6 +32,7 @@ GA_Attribute::GA_Attribute(const GA_Attribute& other)
     for (std::size_t page = 0; page < pages_.size(); ++page)
         std::memcpy(pages_[page].get(), other.pages_[page].get(), page_bytes);
     data_id_ = other.data_id_;
+    type_info_ = other.type_info_;
 }
 
 exint GA_Attribute::single_access_count() { return single_accesses; }
@@ -146,6 +147,10 @@ GA_Primitive::GA_Primitive(const GA_Detail& detail, GA_Offset first_vertex, GA_S
 
 GA_Offset GA_Primitive::getPointOffset(GA_Size i) const { return detail_->getTopology().point_of(first_vertex_ + i); }
 
+std::unique_ptr<GA_Primitive> GA_Primitive::copy_for(const GA_Detail& detail) const {
+    return std::make_unique<GA_Primitive>(detail, first_vertex_, vertex_count_, closed_);
+}
+
 GA_Offset GA_Topology::append(GA_Size count) {
     const auto first = static_cast<GA_Offset>(points_.size());
     points_.resize(points_.size() + static_cast<std::size_t>(count), GA_INVALID_OFFSET);
@@ -182,8 +187,7 @@ void GA_Detail::replaceWith(const GA_Detail& other) {
     topology_ = other.topology_;
     point_groups_ = other.point_groups_;
     primitives_.clear();
-    for (const GA_Primitive& p : other.primitives_)
-        primitives_.emplace_back(*this, p.first_vertex(), p.getVertexCount(), p.is_closed());
+    for (const auto& primitive : other.primitives_) primitives_.push_back(primitive->copy_for(*this));
     attributes_.clear();
     for (const auto& attribute : other.attributes_) attributes_.push_back(std::make_unique<GA_Attribute>(*attribute));
 }
@@ -248,12 +252,12 @@ GA_Offset GA_Detail::appendPrimitivesAndVertices(GA_PrimitiveTypeId, GA_Size cou
     const GA_Offset first = getNumPrimitives();
     first_vertex = topology_.append(count * vertices_each);
     for (GA_Size k = 0; k < count; ++k)
-        primitives_.emplace_back(*this, first_vertex + k * vertices_each, vertices_each, closed);
+        append(std::make_unique<GA_Primitive>(*this, first_vertex + k * vertices_each, vertices_each, closed));
     return first;
 }
 
 const GA_Primitive* GA_Detail::getPrimitiveByIndex(GA_Index index) const {
-    return &primitives_[static_cast<std::size_t>(index)];
+    return primitives_[static_cast<std::size_t>(index)].get();
 }
 
 void GA_Detail::bumpDataIdsForAddOrRemove(bool points, bool, bool) {

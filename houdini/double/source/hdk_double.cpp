@@ -42,6 +42,10 @@ OP_OperatorTable& operators() {
 void load_plugin(const std::string& path) {
     void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library) throw std::runtime_error(dlerror());
+    const auto ask = reinterpret_cast<void (*)(const char**)>(dlsym(library, "HoudiniDSOVersion"));
+    const char* built_for = "nothing";
+    if (ask) ask(&built_for);
+    if (std::string(built_for) != "double") throw std::runtime_error(path + " is built for " + built_for);
     const auto enter = reinterpret_cast<void (*)(OP_OperatorTable*)>(dlsym(library, "newSopOperator"));
     if (!enter) throw std::runtime_error(path + " has no newSopOperator");
     enter(&operators());

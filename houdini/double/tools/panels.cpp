@@ -10,15 +10,24 @@ namespace {
 
 const char* word_of(PRM_Template::Kind kind) {
     switch (kind) {
-        case PRM_Template::Kind::number: return "float";
-        case PRM_Template::Kind::whole: return "integer";
-        case PRM_Template::Kind::toggle: return "toggle";
-        case PRM_Template::Kind::ordinal: return "menu";
-        case PRM_Template::Kind::text: return "string";
-        case PRM_Template::Kind::button: return "button";
-        case PRM_Template::Kind::multi: return "multiparm";
-        case PRM_Template::Kind::ornament: return "label";
-        case PRM_Template::Kind::end: break;
+        case PRM_Template::Kind::number:
+            return "float";
+        case PRM_Template::Kind::whole:
+            return "integer";
+        case PRM_Template::Kind::toggle:
+            return "toggle";
+        case PRM_Template::Kind::ordinal:
+            return "menu";
+        case PRM_Template::Kind::text:
+            return "string";
+        case PRM_Template::Kind::button:
+            return "button";
+        case PRM_Template::Kind::multi:
+            return "multiparm";
+        case PRM_Template::Kind::ornament:
+            return "label";
+        case PRM_Template::Kind::end:
+            break;
     }
     return "";
 }
@@ -41,11 +50,12 @@ std::string list_of(const std::vector<std::string>& words) {
 void print(const PRM_Template& parm, bool& is_first) {
     std::vector<std::string> menu;
     for (const auto& [token, label] : parm.menu) menu.push_back(token);
-    std::printf("%s\n    {\"name\": %s, \"label\": %s, \"folder\": %s, \"type\": \"%s\", \"size\": %d, \"default\": %s, "
-                "\"menu\": %s, \"help\": %s}",
-                is_first ? "" : ",", quoted(parm.name).c_str(), quoted(parm.label).c_str(),
-                quoted(parm.folder).c_str(), word_of(parm.kind), parm.size, list_of(parm.defaults).c_str(),
-                list_of(menu).c_str(), quoted(parm.help).c_str());
+    std::printf(
+        "%s\n    {\"name\": %s, \"label\": %s, \"folder\": %s, \"type\": \"%s\", \"size\": %d, \"default\": %s, "
+        "\"menu\": %s, \"help\": %s}",
+        is_first ? "" : ",", quoted(parm.name).c_str(), quoted(parm.label).c_str(), quoted(parm.folder).c_str(),
+        word_of(parm.kind), parm.size, list_of(parm.defaults).c_str(), list_of(menu).c_str(),
+        quoted(parm.help).c_str());
     is_first = false;
     for (const PRM_Template& child : parm.children) print(child, is_first);
 }

@@ -123,6 +123,9 @@ void CheckpointWriter::write_to(Output& output) const {
 }
 
 void CheckpointWriter::append_to(std::vector<std::byte>& out) const {
+    std::size_t bytes = out.size() + sections_.size() * sizeof(checkpoint::TableEntry) + 1024;
+    for (const Section& section : sections_) bytes += section.bytes;
+    out.reserve(bytes);
     MemoryOutput output(out);
     write_to(output);
 }

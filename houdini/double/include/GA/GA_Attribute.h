@@ -18,6 +18,8 @@ class GA_Attribute {
     int getTupleSize() const { return tuple_size_; }
     GA_DataId getDataId() const { return data_id_; }
     void bumpDataId();
+    void setTypeInfo(GA_TypeInfo info) { type_info_ = info; }
+    GA_TypeInfo getTypeInfo() const { return type_info_; }
 
     // The double's own.
     GA_Storage storage() const { return storage_; }
@@ -42,6 +44,7 @@ class GA_Attribute {
     int tuple_size_;
     double fallback_;
     GA_DataId data_id_;
+    GA_TypeInfo type_info_ = GA_TYPE_VOID;
     GA_Size offset_count_ = 0;
     std::vector<std::unique_ptr<char[]>> pages_;
 };

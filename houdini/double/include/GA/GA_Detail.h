@@ -1,7 +1,6 @@
 // Of the double, not of the HDK: houdini/double/PROVENANCE.md.
 #pragma once
 
-#include <deque>
 #include <map>
 #include <memory>
 #include <string>
@@ -81,6 +80,7 @@ class GA_Detail {
 
     // The double's own.
     std::vector<std::string> attribute_names(GA_AttributeOwner owner) const;
+    void append(std::unique_ptr<GA_Primitive> primitive) { primitives_.push_back(std::move(primitive)); }
 
  private:
     GA_Attribute* add(GA_AttributeOwner owner, const UT_StringHolder& name, GA_Storage storage, int tuple_size,
@@ -88,7 +88,7 @@ class GA_Detail {
 
     GA_IndexMap points_;
     GA_Topology topology_;
-    std::deque<GA_Primitive> primitives_;                    // whose members stay where they are
+    std::vector<std::unique_ptr<GA_Primitive>> primitives_;
     std::vector<std::unique_ptr<GA_Attribute>> attributes_;  // the first is P
     std::map<std::string, GA_PointGroup> point_groups_;
 };

@@ -1,7 +1,7 @@
 // Of the double, not of the HDK: houdini/double/PROVENANCE.md.
 #pragma once
 
-#include <vector>
+#include <memory>
 
 #include "GA/GA_Types.h"
 
@@ -10,13 +10,13 @@ class GA_Detail;
 class GA_Primitive {
  public:
     GA_Primitive(const GA_Detail& detail, GA_Offset first_vertex, GA_Size vertex_count, bool closed);
-    GA_PrimitiveTypeId getTypeId() const { return GA_PRIMPOLY; }
+    virtual ~GA_Primitive() = default;
+    virtual GA_PrimitiveTypeId getTypeId() const { return GA_PRIMPOLY; }
     GA_Size getVertexCount() const { return vertex_count_; }
     GA_Offset getPointOffset(GA_Size i) const;
 
     // The double's own.
-    GA_Offset first_vertex() const { return first_vertex_; }
-    bool is_closed() const { return closed_; }
+    virtual std::unique_ptr<GA_Primitive> copy_for(const GA_Detail& detail) const;
 
  private:
     const GA_Detail* detail_;

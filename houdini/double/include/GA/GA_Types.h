@@ -17,7 +17,8 @@ constexpr GA_Size GA_PAGE_SIZE = 1024;
 enum GA_AttributeOwner { GA_ATTRIB_VERTEX, GA_ATTRIB_POINT, GA_ATTRIB_PRIMITIVE, GA_ATTRIB_GLOBAL };
 constexpr GA_AttributeOwner GA_ATTRIB_DETAIL = GA_ATTRIB_GLOBAL;
 enum GA_Storage { GA_STORE_INT32, GA_STORE_INT64, GA_STORE_REAL32, GA_STORE_REAL64 };
-enum GA_PrimitiveTypeId { GA_PRIMPOLY = 1 };
+enum GA_TypeInfo { GA_TYPE_VOID, GA_TYPE_POINT, GA_TYPE_VECTOR };
+enum GA_PrimitiveTypeId { GA_PRIMPOLY = 1, GA_PRIMVDB = 2 };
 
 class GA_Defaults {
  public:

@@ -18,6 +18,3 @@ class OP_OperatorTable {
  private:
     std::map<std::string, std::unique_ptr<OP_Operator>> operators_;
 };
-
-// What Houdini looks for in a plugin.
-extern "C" SYS_VISIBILITY_EXPORT void newSopOperator(OP_OperatorTable* table);

@@ -5,10 +5,14 @@
 #include "OP/OP_Node.h"
 #include "SOP/SOP_Error.h"
 
+class OP_OperatorTable;
 class SOP_NodeVerb;
 class SOP_NodeCache;
 
-class SOP_Flags {
+// What Houdini looks for in a plugin.
+extern "C" SYS_VISIBILITY_EXPORT void newSopOperator(OP_OperatorTable* table);
+
+class SOP_NodeFlags {
  public:
     void setManagesDataIDs(bool yes) { manages_data_ids_ = yes; }
     bool getManagesDataIDs() const { return manages_data_ids_; }
@@ -40,7 +44,7 @@ class SOP_Node : public OP_Node {
     void addMessage(int code, const char* text = nullptr) { error_manager().add(UT_ERROR_MESSAGE, code, text); }
 
     GU_Detail* gdp;
-    SOP_Flags mySopFlags;
+    SOP_NodeFlags mySopFlags;
 
  private:
     GU_DetailHandle handle_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "SYS/SYS_Types.h"
 
@@ -11,7 +12,8 @@ class UT_Vector3T {
     using value_type = T;
     static constexpr int tuple_size = 3;
 
-    UT_Vector3T() = default;
+    // The real one leaves its members as they are; not-a-number shows where somebody counts on zeros.
+    UT_Vector3T() { values_.fill(std::numeric_limits<T>::quiet_NaN()); }
     UT_Vector3T(T x, T y, T z) : values_{x, y, z} {}
     template <typename S>
     UT_Vector3T(const UT_Vector3T<S>& other)
@@ -36,7 +38,7 @@ class UT_Vector3T {
     bool operator!=(const UT_Vector3T& other) const { return values_ != other.values_; }
 
  private:
-    std::array<T, 3> values_{};
+    std::array<T, 3> values_;
 };
 using UT_Vector3F = UT_Vector3T<fpreal32>;
 using UT_Vector3D = UT_Vector3T<fpreal64>;

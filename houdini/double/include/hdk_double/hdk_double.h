@@ -12,7 +12,8 @@
 
 namespace hdk_double {
 
-// Opens the plugin as Houdini does and lets it register its operators; throws std::runtime_error if it cannot.
+// Opens the plugin as Houdini does, asks what it was built for and lets it register its operators; throws
+// std::runtime_error if it cannot.
 void load_plugin(const std::string& path);
 OP_OperatorTable& operators();
 
