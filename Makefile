@@ -18,7 +18,7 @@ build: .venv/ready
 	pip install --quiet '.[opencl]'
 
 unit: .venv/ready
-	pip install --quiet --config-settings=cmake.define.FONTANA_WERROR=ON '.[opencl,test]'
+	pip install --quiet --config-settings=cmake.define.FONTANA_WERROR=ON '.[cuda,opencl,test]'
 	python -m pytest -q
 
 sanitize: .venv/ready

@@ -10,21 +10,18 @@ src/fontana/kernels/kernel_list.def states. Writes scaling.json and scaling.png.
 
 from __future__ import annotations
 
-import re
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import click
-import numpy as np
 
 from fontana import FontanaError, bench
+from fontana.launch_profile import profile_notes, profile_of, profile_table
 
 BACKENDS = ("cpu", "opencl")
 BOUND, BOUND_FROM, BOUND_TO = 1.5, 10_000, 1_000_000
 PROFILED_SUBSTEPS = 20
-KERNEL_LIST = Path(__file__).resolve().parents[1] / "src/fontana/kernels/kernel_list.def"
 COLOURS = {"cpu": "#1f5fa8", "opencl": "#c8641b"}
 RESULTS = Path(__file__).resolve().parent / "results/local"
 
@@ -43,7 +40,6 @@ def command(out: Path, counts: list[int], opencl_most: int, profile_count: int, 
         **bench.describe_conditions([Path(sys.executable).name, "benchmarks/scaling.py", *sys.argv[1:]]),
         "settings": {"scene": "box", "neighbors": "grid", "threads": threads, "budget_seconds": budget},
         "missing": missing,
-        "copy_gigabytes_per_second": copy_bandwidth(),
         "costs": {},
         "profiles": {},
     }
@@ -90,65 +86,23 @@ def spread(rows: list[dict]) -> dict | None:
     return bound | {"ratio": ratio, "ratio_of_fastest_samples": ratio_of_fastest}
 
 
-def kernel_facts() -> dict[str, tuple[int, int]]:
-    """Bytes and flops a particle of each kernel, from the library's own list."""
-    rows = re.findall(r"^KERNEL_ENTRY\((\w+), (\d+), (\d+)\)", KERNEL_LIST.read_text(), re.MULTILINE)
-    return {name: (int(moved), int(flops)) for name, moved, flops in rows}
-
-
 def profile(backend: str, particle_count: int, threads: int) -> dict:
     """Every launch of the substeps after the warm-up by name, the most expensive first."""
     simulation, dt = bench.bench_scene("box", particle_count).build(backend, threads, profile=True)
     simulation.set("time.substeps", PROFILED_SUBSTEPS)
     simulation.set("time.timestep", PROFILED_SUBSTEPS * dt)
     simulation.step_frame()
-    before = {name: (launches, seconds) for name, launches, seconds in simulation.profile()}
+    before = simulation.profile()
     begin = time.perf_counter()
     simulation.step_frame()
     wall = time.perf_counter() - begin
-    facts, rows = kernel_facts(), []
-    for name, launches, seconds in simulation.profile():
-        earlier = before.get(name, (0, 0.0))
-        launches, seconds = launches - earlier[0], seconds - earlier[1]
-        if launches:
-            rows.append(profile_row(name, launches, seconds, facts.get(name), particle_count))
-    total = sum(row["milliseconds"] for row in rows)
-    for row in rows:
-        row["share"] = bench.significant(row["milliseconds"] / total)
     return {
         "particles": particle_count,
         "substeps": PROFILED_SUBSTEPS,
         "wall_milliseconds": bench.significant(1e3 * wall),
         "device": simulation.device().name,
-        "rows": sorted(rows, key=lambda row: -row["milliseconds"]),
+        **profile_of(simulation, before),
     }
-
-
-def profile_row(name: str, launches: int, seconds: float, facts: tuple[int, int] | None, particle_count: int) -> dict:
-    row = {"name": name, "launches": launches, "milliseconds": bench.significant(1e3 * seconds)}
-    if facts is None or seconds <= 0.0:
-        return row
-    work = 1e-9 * launches * particle_count / seconds
-    return row | {
-        "bytes_per_particle": facts[0],
-        "flops_per_particle": facts[1],
-        "gigabytes_per_second": bench.significant(facts[0] * work),
-        "gigaflops": bench.significant(facts[1] * work),
-    }
-
-
-def copy_bandwidth() -> float:
-    """GB/s that the usable cores of this machine read and write together in copying: the limit of a CPU device."""
-    cores = bench.usable_cores()
-    source = [np.ones(2**23, np.float64) for _ in range(cores)]  # 64 MiB each: beyond the caches of a core
-    target = [np.zeros_like(array) for array in source]
-    seconds = []
-    with ThreadPoolExecutor(cores) as pool:
-        for _ in range(5):
-            begin = time.perf_counter()
-            list(pool.map(np.copyto, target, source))
-            seconds.append(time.perf_counter() - begin)
-    return bench.significant(2e-9 * sum(array.nbytes for array in source) / min(seconds))
 
 
 def print_costs(results: dict) -> None:
@@ -179,17 +133,11 @@ def bound_text(backend: str, bound: dict | None) -> str:
 
 
 def print_profile(backend: str, shown: dict) -> None:
-    lines = []
-    for row in shown["rows"]:
-        line = [row["name"], str(row["launches"]), f"{row['milliseconds']:.1f}", f"{row['share']:.1%}"]
-        if "gigaflops" in row:
-            line += [str(row["bytes_per_particle"]), str(row["flops_per_particle"])]
-            line += [f"{row['gigabytes_per_second']:.2f}", f"{row['gigaflops']:.2f}"]
-        lines.append(line)
     size = f"{shown['substeps']} substeps of {shown['particles']:,} particles"
-    title = f"{backend}: {size}, {shown['wall_milliseconds']:.0f} ms"
-    columns = ["launch", "launches", "ms", "share", "bytes/particle", "flops/particle", "GB/s", "GFLOP/s"]
-    bench.print_table(title, columns, lines)
+    bench.print_table(f"{backend}: {size}, {shown['wall_milliseconds']:.0f} ms", *profile_table(shown))
+    for note in profile_notes(shown):
+        click.echo(note)
+    click.echo()
 
 
 def draw(results: dict, path: Path) -> None:

@@ -172,6 +172,20 @@ struct Parameter {
     }
 };
 
+struct KernelProfile {
+    std::string name;
+    std::uint64_t launches, elements;
+    double seconds, bytes, flops;
+
+    KernelProfile(const fontana_kernel_profile& row)
+        : name(row.name),
+          launches(row.launches),
+          elements(row.elements),
+          seconds(row.seconds),
+          bytes(row.bytes),
+          flops(row.flops) {}
+};
+
 struct Device {
     std::string backend, name, driver, reason;
     std::uint64_t memory_bytes;
@@ -386,13 +400,22 @@ class Simulation {
         return Device(device);
     }
 
-    std::vector<std::tuple<std::string, std::uint64_t, double>> profile() {
+    std::vector<KernelProfile> profile() {
         const fontana_kernel_profile* rows = nullptr;
         std::size_t count = 0;
         check(fontana_read_profile(handle_, &rows, &count));
-        std::vector<std::tuple<std::string, std::uint64_t, double>> result;
-        for (std::size_t k = 0; k < count; ++k) result.emplace_back(rows[k].name, rows[k].launches, rows[k].seconds);
-        return result;
+        return {rows, rows + count};
+    }
+
+    double measure_copy(std::size_t bytes) {
+        double bytes_per_second = 0.0;
+        fontana_status status;
+        {
+            nb::gil_scoped_release release;
+            status = fontana_measure_copy(handle_, bytes, &bytes_per_second);
+        }
+        check(status);
+        return bytes_per_second;
     }
 
     void write_bgeo(const std::string& path) { check(fontana_write_bgeo(handle_, path.c_str())); }
@@ -478,6 +501,13 @@ void bind_tables(nb::module_& m) {
         .def_prop_ro("default", &Parameter::default_value)
         .def_prop_ro("choices", &Parameter::choices);
 #undef ROW_TEXT
+    nb::class_<KernelProfile>(m, "KernelProfile")
+        .def_ro("name", &KernelProfile::name)
+        .def_ro("launches", &KernelProfile::launches)
+        .def_ro("elements", &KernelProfile::elements)
+        .def_ro("seconds", &KernelProfile::seconds)
+        .def_ro("bytes", &KernelProfile::bytes)
+        .def_ro("flops", &KernelProfile::flops);
     nb::class_<Device>(m, "Device")
         .def_ro("backend", &Device::backend)
         .def_ro("name", &Device::name)
@@ -550,6 +580,7 @@ void bind_simulation(nb::module_& m) {
         .def("check", &Simulation::check_settings)
         .def("device", &Simulation::device)
         .def("profile", &Simulation::profile)
+        .def("measure_copy", &Simulation::measure_copy, "bytes"_a)
         .def("write_bgeo", &Simulation::write_bgeo, "path"_a)
         .def("save_checkpoint", &Simulation::save_checkpoint, "path"_a, "tag"_a = "")
         .def("load_checkpoint", &Simulation::load_checkpoint, "path"_a)

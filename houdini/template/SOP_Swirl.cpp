@@ -34,7 +34,7 @@ const char* const theDsFile = R"THEDSFILE(
         label   "Device"
         type    string
         default { "auto" }
-        menu    { "auto" "First GPU, else CPU" "cpu" "CPU" "opencl" "OpenCL" }
+        menu    { "auto" "First GPU, else CPU" "cpu" "CPU" "opencl" "OpenCL" "cuda" "CUDA" }
     }
     parm {
         name    "angle"

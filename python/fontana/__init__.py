@@ -10,7 +10,7 @@ sentence: BadInput (SceneError for scenes), OutOfMemory, Unstable, Interrupted, 
 InternalError.
 """
 
-from fontana import opencl_runtime
+from fontana import cuda_runtime, opencl_runtime
 from fontana._core import (
     BadInput,
     DeviceLost,
@@ -28,12 +28,11 @@ from fontana._core import (
 from fontana.errors import SceneError
 from fontana.fluid_table import fluids
 from fontana.formats import read_frame
-from fontana.opencl_runtime import prepare as _prepare_opencl
 from fontana.scene import Scene, bundled_scenes, load_scene
 from fontana.schema import scene_schema
 from fontana.simulation import Frame, Simulation, StaleFrameError
 
-_prepare_opencl()
+cuda_runtime.prepare()
 opencl_runtime.prepare()
 
 __version__ = version()

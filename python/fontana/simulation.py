@@ -81,7 +81,7 @@ class Simulation:
             print(frame.number, frame.position.mean(axis=0))
 
     scene      path of a scene file, name of a bundled scene, a dict of the same shape, a Scene; None starts empty
-    backend    "auto", "cpu", "opencl"; None leaves it to the scene
+    backend    "auto", "cpu", "cuda", "opencl"; None leaves it to the scene
     overrides  parameters by path or by the last part of it, in SI or as text with a unit: viscosity="300 cP",
                or **{"fluid.viscosity": 0.3, "emitters[0].speed": 2}
 
@@ -116,7 +116,8 @@ class Simulation:
 
     @property
     def backend(self) -> str:
-        """Where the kernels run: "auto", "cpu" or "opencl". Setting it moves the particles there before the next frame.
+        """Where the kernels run: "auto", "cpu", "cuda" or "opencl". Setting it moves the particles there before the
+        next frame.
 
         Raises BadInput for an unknown word; DeviceUnavailable comes with the next step.
         """

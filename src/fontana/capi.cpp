@@ -75,6 +75,17 @@ fontana_device view_of(const fontana::DeviceInfo& device) {
             device.compute_units,   device.is_gpu ? 1 : 0, device.available ? 1 : 0, device.reason.c_str()};
 }
 
+fontana_kernel_profile view_of(const fontana::ProfileRow& row) {
+    const fontana::KernelFacts* facts = fontana::find_kernel_facts(row.name);
+    const auto elements = static_cast<double>(row.elements);
+    return {row.name.c_str(),
+            row.launches,
+            row.seconds,
+            row.elements,
+            facts ? elements * facts->bytes_per_particle : 0.0,
+            facts ? elements * facts->flops_per_particle : 0.0};
+}
+
 // A device function times the constant that the solver takes out of the sum.
 double smoothing(const std::string& kernel, const std::string& quantity, double r, double h) {
     const float rf = static_cast<float>(r), hf = static_cast<float>(h), r2 = rf * rf, h2 = hf * hf;
@@ -350,10 +361,16 @@ fontana_status fontana_read_profile(fontana_simulation* simulation, const fontan
         std::sort(simulation->profile.begin(), simulation->profile.end(),
                   [](const auto& a, const auto& b) { return a.seconds > b.seconds; });
         simulation->profile_view.clear();
-        for (const fontana::ProfileRow& row : simulation->profile)
-            simulation->profile_view.push_back({row.name.c_str(), row.launches, row.seconds});
+        for (const fontana::ProfileRow& row : simulation->profile) simulation->profile_view.push_back(view_of(row));
         *rows = simulation->profile_view.data();
         *count = simulation->profile_view.size();
+    });
+}
+
+fontana_status fontana_measure_copy(fontana_simulation* simulation, size_t bytes, double* bytes_per_second) {
+    return guarded([&] {
+        require(bytes_per_second, "bytes_per_second");
+        *bytes_per_second = simulation_of(simulation).copy_bandwidth(bytes);
     });
 }
 

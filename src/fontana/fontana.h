@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 /* Raised when a struct or a function below changes its meaning. */
-#define FONTANA_ABI_VERSION 1
+#define FONTANA_ABI_VERSION 2
 
 typedef enum fontana_status {
     FONTANA_OK = 0,
@@ -218,7 +218,7 @@ FONTANA_API fontana_status fontana_check(fontana_simulation*);
 /* ---- devices ------------------------------------------------------------------------------------------------ */
 
 typedef struct fontana_device {
-    const char* backend; /* "cpu", "opencl" */
+    const char* backend; /* "cpu", "cuda", "opencl" */
     const char* name;    /* the device's own */
     const char* driver;  /* vendor and version */
     uint64_t memory_bytes;
@@ -237,10 +237,18 @@ typedef struct fontana_kernel_profile {
     const char* name;
     uint64_t launches;
     double seconds;
+    uint64_t elements; /* particles (or values of a sort) that the launches went through, summed over them */
+    /* What they must move and compute at the least, summed: elements times what kernels/kernel_list.def states for the
+     * grid and 30 neighbours out of 216 candidates. 0 where nothing is stated, as for a sort. */
+    double bytes, flops;
 } fontana_kernel_profile;
 /* Time by launch since the simulation began, largest first; needs solver.profile. */
 FONTANA_API fontana_status fontana_read_profile(fontana_simulation*, const fontana_kernel_profile** rows,
                                                 size_t* count);
+
+/* How fast the device in use copies `bytes` (at least 16) from one array to another by a kernel, counting what it reads
+ * and what it writes: the best of five, in bytes a second. Needs room for both. Its launches count in the profile. */
+FONTANA_API fontana_status fontana_measure_copy(fontana_simulation*, size_t bytes, double* bytes_per_second);
 
 /* ---- files: each appears under its name only when it is complete and on disk ---------------------------------- */
 

@@ -123,13 +123,15 @@ void Simulation::set_force(std::size_t count, const float* force) {
 }
 
 Solver& Simulation::solver() {
+    const bool tiles = parameters.solver_neighbors == "tiles";
     const std::string key = parameters.solver_backend + " " + parameters.solver_precision + " " +
                             std::to_string(parameters.solver_threads) + " " + std::to_string(parameters.solver_device) +
-                            " " + std::to_string(parameters.solver_profile);
+                            " " + std::to_string(parameters.solver_profile) + " " + std::to_string(tiles);
     if (solver_ && key == solver_key_) return *solver_;
     BackendOptions options;
     options.strict = parameters.solver_precision == "strict";
     options.profile = parameters.solver_profile;
+    options.tiles = tiles;
     options.threads = parameters.solver_threads;
     options.device = parameters.solver_device;
     auto moved = std::make_unique<Solver>(make_backend(parameters.solver_backend, options));
@@ -144,6 +146,9 @@ Solver& Simulation::solver() {
 
 void Simulation::check() const {
     check_time_step(parameters);
+    if (parameters.solver_neighbors == "tiles" && parameters.fluid_method != "mueller")
+        fail(FONTANA_BAD_INPUT, "solver.neighbors=tiles is a choice of fluid.method=mueller, and the method is " +
+                                    parameters.fluid_method + ": use solver.neighbors=grid");
     for (const Emitter& emitter : emitters_) emitter.check(scene_spacing());
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "backends/backend.h"
+#include "backends/copy_bandwidth.h"
 #include "fontana.h"
 #include "io/checkpoint.h"
 #include "scene/collider.h"
@@ -69,6 +70,7 @@ class Simulation {
     void check() const;
     const DeviceInfo& device() { return solver().backend().device(); }
     std::vector<ProfileRow> profile() { return solver().backend().profile(); }
+    double copy_bandwidth(std::size_t bytes) { return measure_copy_bandwidth(solver().backend(), bytes); }
     std::uint64_t memory_for(std::uint64_t particle_count) const;
 
  private:

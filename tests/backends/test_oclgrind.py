@@ -15,11 +15,11 @@ import pytest
 
 HERE = Path(__file__).parent
 SOURCE = HERE.parents[1] / "src" / "fontana"
-SMALL_RUN = HERE / "opencl_faults" / "small_run.py"
+SMALL_RUN = HERE / "small_run.py"
 LIBRARY = "liboclgrind-rt.so"
 # Inlining a function with restrict pointers leaves a mark in LLVM's code that this simulator does not know.
 WATCH = ("--data-races", "--check-api", "--build-options", "-cl-opt-disable")
-METHODS = ("mueller", "wcsph", "pcisph", "dfsph")
+SCHEMES = (("mueller", "grid"), ("mueller", "tiles"), ("wcsph", "grid"), ("pcisph", "grid"), ("dfsph", "grid"))
 
 
 def find_oclgrind():
@@ -39,18 +39,19 @@ def find_oclgrind():
 def kernels_of_the_library():
     """By the names of their launches."""
     listed = re.findall(r"^KERNEL_ENTRY\((\w+)", (SOURCE / "kernels" / "kernel_list.def").read_text(), re.MULTILINE)
-    sort = re.findall(r"^KERNEL void sort_(\w+)", (SOURCE / "backends/opencl/sort.cl").read_text(), re.MULTILINE)
+    sort = re.findall(r"^\w*KERNEL void sort_(\w+)", (SOURCE / "backends/gpu/sort.inl").read_text(), re.MULTILINE)
     assert len(listed) > 10
     assert len(sort) == 5
     return {*listed, *(f"sort: {name.replace('_', ' ')}" for name in sort)}
 
 
-def run_simulator(method, log):
+def run_simulator(method, neighbors, log):
     """The names of all launches. What the simulator reports goes to `log`."""
     program, library = find_oclgrind()
     environment = os.environ | {"FONTANA_OPENCL_LIBRARY": str(library), "FONTANA_KERNEL_CACHE": "off"}
     environment.pop("OPENCL_LAYERS", None)
-    command = [program, *WATCH, "--log", log, sys.executable, SMALL_RUN, f"fluid.method={method}"]
+    settings = [f"fluid.method={method}", f"solver.neighbors={neighbors}"]
+    command = [program, *WATCH, "--log", log, sys.executable, SMALL_RUN, "opencl", *settings]
     result = subprocess.run(command, env=environment, capture_output=True, text=True)
     assert result.returncode == 0, result.stderr
     assert result.stderr == ""
@@ -61,8 +62,8 @@ def run_simulator(method, log):
 
 def test_kernels_have_no_race_and_use_opencl_as_specified(tmp_path):
     launches = set()
-    for method in METHODS:
-        log = tmp_path / method
-        launches |= run_simulator(method, log)
+    for method, neighbors in SCHEMES:
+        log = tmp_path / f"{method}-{neighbors}"
+        launches |= run_simulator(method, neighbors, log)
         assert not log.exists() or log.read_text() == ""
-    assert kernels_of_the_library() <= launches, "a kernel that no method of this test launches was not watched"
+    assert kernels_of_the_library() <= launches, "a kernel that no scheme of this test launches was not watched"

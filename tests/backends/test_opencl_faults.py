@@ -38,8 +38,6 @@ WORKING = (
 )
 # A name, the kernel cache: without these the run goes on.
 DISPENSABLE = ("clGetPlatformInfo", "clCreateProgramWithBinary", "clGetProgramInfo")
-# Called only where the kernel cache is empty.
-COMPILING = ("clCreateProgramWithSource", "clBuildProgram", "clGetProgramInfo")
 
 
 def clear(folder):
@@ -47,82 +45,66 @@ def clear(folder):
         entry.unlink()
 
 
-def sweep(small_run, function, error, *settings):
-    """The runs that raised an error. The others must have the result of a run in which nothing fails."""
-    code, name = error
-    expected = small_run.lines(*settings)[-1]
-    if function in COMPILING:
-        clear(small_run.cache)
-    runs = small_run.lines("sweep", small_run.layer, str(code), function, *settings)
-    assert len(runs) > 1, f"no run calls {function}"
-    assert runs[-1] == expected
-    failed = [run for run in runs if "error" in run]
-    assert all(run == expected for run in runs if run not in failed)
-    for run in failed:
-        assert name in run["sentence"], run
-    return failed
-
-
 @pytest.mark.parametrize("function", FINDING_DEVICES)
-def test_devices_that_cannot_be_asked_are_unavailable(small_run, function):
-    failed = sweep(small_run, function, INVALID_QUEUE)
+def test_devices_that_cannot_be_asked_are_unavailable(opencl_run, function):
+    failed = opencl_run.sweep(function, INVALID_QUEUE)
     assert {run["error"] for run in failed} == {"DeviceUnavailable"}
 
 
 @pytest.mark.parametrize("function", STARTING)
 @pytest.mark.parametrize(("error", "kind"), [(INVALID_QUEUE, "DeviceUnavailable"), (OUT_OF_MEMORY, "OutOfMemory")])
-def test_a_device_that_does_not_start_is_unavailable(small_run, function, error, kind):
-    failed = sweep(small_run, function, error)
+def test_a_device_that_does_not_start_is_unavailable(opencl_run, function, error, kind):
+    failed = opencl_run.sweep(function, error)
     assert {run["error"] for run in failed} == {kind}
     assert all(function in run["sentence"] for run in failed)
 
 
 @pytest.mark.parametrize("function", WORKING)
-def test_a_device_that_fails_in_mid_run_is_lost(small_run, function):
+def test_a_device_that_fails_in_mid_run_is_lost(opencl_run, function):
     """small_run.py also checks that a later call on the lost device says the same."""
-    failed = sweep(small_run, function, INVALID_QUEUE)
+    failed = opencl_run.sweep(function, INVALID_QUEUE)
     assert {run["error"] for run in failed} == {"DeviceLost"}
     assert all("continue from the last checkpoint" in run["sentence"] for run in failed)
 
 
 @pytest.mark.parametrize("function", WORKING)
-def test_a_device_without_memory_says_so(small_run, function):
-    failed = sweep(small_run, function, OUT_OF_RESOURCES)
+def test_a_device_without_memory_says_so(opencl_run, function):
+    failed = opencl_run.sweep(function, OUT_OF_RESOURCES)
     assert {run["error"] for run in failed} == {"OutOfMemory"}
 
 
 @pytest.mark.parametrize("method", ["dfsph", "pcisph", "wcsph"])
 @pytest.mark.parametrize("function", ["clCreateBuffer", "clEnqueueReadBuffer"])
 @pytest.mark.parametrize(("error", "kind"), [(INVALID_QUEUE, "DeviceLost"), (OUT_OF_RESOURCES, "OutOfMemory")])
-def test_the_other_methods_too(small_run, method, function, error, kind):
+def test_the_other_methods_too(opencl_run, method, function, error, kind):
     """They have more buffers, and read sums from the device to decide when to stop."""
-    failed = sweep(small_run, function, error, f"fluid.method={method}")
+    failed = opencl_run.sweep(function, error, f"fluid.method={method}")
     assert {run["error"] for run in failed} == {kind}
 
 
 @pytest.mark.parametrize("function", DISPENSABLE)
-def test_what_can_be_done_without_stops_nothing(small_run, function):
-    assert sweep(small_run, function, INVALID_QUEUE) == []
+def test_what_can_be_done_without_stops_nothing(opencl_run, function):
+    assert opencl_run.sweep(function, INVALID_QUEUE) == []
 
 
-def test_errors_name_the_kernel_and_the_buffer(small_run):
-    launches = " ".join(run["sentence"] for run in sweep(small_run, "clEnqueueNDRangeKernel", INVALID_QUEUE))
+def test_errors_name_the_kernel_and_the_buffer(opencl_run):
+    launches = " ".join(run["sentence"] for run in opencl_run.sweep("clEnqueueNDRangeKernel", INVALID_QUEUE))
     for kernel in ("density", "fluid_force", "surface_tension", "integrate", "sort: scan blocks", "sort: order ties"):
         assert f"while running the kernel {kernel}: " in launches
-    allocations = " ".join(run["sentence"] for run in sweep(small_run, "clCreateBuffer", OUT_OF_MEMORY))
+    allocations = " ".join(run["sentence"] for run in opencl_run.sweep("clCreateBuffer", OUT_OF_MEMORY))
     for buffer in ("position", "density", "cell start", "sort: rank"):
         assert re.search(rf"while allocating [0-9]+ bytes for {buffer}: ", allocations)
 
 
-def test_an_error_outside_the_standard_is_reported_by_number(small_run):
-    sweep(small_run, "clFinish", UNKNOWN)
+def test_an_error_outside_the_standard_is_reported_by_number(opencl_run):
+    opencl_run.sweep("clFinish", UNKNOWN)
 
 
-def build_error(small_run, **environment):
+def build_error(opencl_run, **environment):
     """What a run says whose kernels do not compile: PoCL adds flags to every build on request, here a macro that no
     kernel survives. (It also tells the number of errors on stderr.)"""
     broken = {"POCL_EXTRA_BUILD_FLAGS": "-DStepConstants=3"}
-    result = small_run.start(**broken, **environment)
+    result = opencl_run.start(**broken, **environment)
     assert result.returncode == 0
     run = json.loads(result.stdout)
     if "digest" in run:
@@ -130,24 +112,24 @@ def build_error(small_run, **environment):
     return run
 
 
-def test_a_failed_build_shows_the_compilers_first_lines_and_keeps_its_log(small_run):
-    clear(small_run.cache)
-    run = build_error(small_run)
+def test_a_failed_build_shows_the_compilers_first_lines_and_keeps_its_log(opencl_run):
+    clear(opencl_run.cache)
+    run = build_error(opencl_run)
     assert run["error"] == "DeviceUnavailable"
     found = re.fullmatch(
         r"the kernels do not compile for .+; the whole log is in (\S+) and begins: (.+)", run["sentence"]
     )
     assert found, run["sentence"]
     log = Path(found[1])
-    assert log.parent == small_run.cache
+    assert log.parent == opencl_run.cache
     shown = found[2].split(" | ")
     assert len(shown) == 4
     assert log.read_text().split("\n")[:4] == shown
     assert "step_constants.h:" in shown[0], "the compiler's messages should name the file to edit"
 
 
-def test_the_log_of_a_failed_build_is_kept_without_a_cache_too(small_run, tmp_path):
-    run = build_error(small_run, FONTANA_KERNEL_CACHE="off", TMPDIR=str(tmp_path))
+def test_the_log_of_a_failed_build_is_kept_without_a_cache_too(opencl_run, tmp_path):
+    run = build_error(opencl_run, FONTANA_KERNEL_CACHE="off", TMPDIR=str(tmp_path))
     (log,) = tmp_path.glob("fontana-build-log-*")
     assert f"the whole log is in {log} and begins" in run["sentence"]
     assert "step_constants.h:" in log.read_text()

@@ -64,7 +64,7 @@ def test_thesis_writes_every_number_with_its_conditions(small_run):
     assert {"cpu", "cores", "usable_cores", "memory_bytes", "os", "load_average_before", "load_average_after"} <= set(
         results["machine"]
     )
-    assert {device["backend"] for device in results["devices"]} == {"cpu", "opencl"}
+    assert {device["backend"] for device in results["devices"]} == {"cpu", "cuda", "opencl"}
     assert results["versions"]["fontana"]
     assert results["commit"] is None, "the folder of the run is no checkout"
     assert list(results["scenes"]) == ["fountain", "box"]

@@ -318,8 +318,10 @@ static void device(Fuzzer* f) {
     fontana_device in_use;
     const fontana_kernel_profile* rows = NULL;
     size_t count = 0;
+    double speed;
     CALL(f, device_in_use, s, MAYBE(f, &in_use));
     CALL(f, read_profile, s, MAYBE(f, &rows), MAYBE(f, &count));
+    CALL(f, measure_copy, s, below(f, 99), MAYBE(f, &speed));
 }
 
 /* What earlier sequences left would make this one another. */

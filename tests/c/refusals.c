@@ -89,6 +89,7 @@ static void refuse_null_simulation(void) {
     BAD(fontana_check(NULL), part);
     BAD(fontana_device_in_use(NULL, &device), part);
     BAD(fontana_read_profile(NULL, &rows, &size), part);
+    BAD(fontana_measure_copy(NULL, 16, numbers), part);
     BAD(fontana_write_bgeo(NULL, "x.bgeo"), part);
     BAD(fontana_save_checkpoint(NULL, "x.checkpoint", NULL), part);
     BAD(fontana_load_checkpoint(NULL, "x.checkpoint"), part);
@@ -127,6 +128,8 @@ static void refuse_null_arguments(fontana_simulation* s) {
     BAD(fontana_device_in_use(s, NULL), "out must not be null");
     BAD(fontana_read_profile(s, NULL, &size), "rows must not be null");
     BAD(fontana_read_profile(s, &rows, NULL), "count must not be null");
+    BAD(fontana_measure_copy(s, 16, NULL), "bytes_per_second must not be null");
+    BAD(fontana_measure_copy(s, 15, numbers), "16 bytes to 64 GiB, not with 15");
     BAD(fontana_count_neighbors(s, NULL, fontana_particle_count(s)), "out must not be null");
     fontana_collider_defaults(FONTANA_PLANE_Y, NULL);
     fontana_emitter_defaults(FONTANA_BLOCK, NULL);

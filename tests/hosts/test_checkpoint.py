@@ -29,11 +29,12 @@ KILL_COUNT = 30
 FRAME_COUNT = 12
 
 
-@pytest.fixture(params=[("cpu", 1), ("cpu", 2), ("opencl", 0)], ids=lambda device: f"{device[0]}-{device[1]}")
-def device(request):
+@pytest.fixture(
+    params=[("cpu", 1), ("cpu", 2), ("cuda", 0), ("opencl", 0)], ids=lambda device: f"{device[0]}-{device[1]}"
+)
+def device(request, use_backend):
     """Backend and threads."""
-    if request.param[0] == "opencl":
-        request.getfixturevalue("opencl_device")
+    use_backend(request.param[0])
     return request.param
 
 

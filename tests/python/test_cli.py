@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from pathlib import Path
 
@@ -126,20 +127,32 @@ def test_dry_run_says_the_costs_and_writes_nothing(fontana, drop_file: Path, tmp
     assert not (tmp_path / "out").exists()
 
 
-def test_verify_compares_every_backend(fontana) -> None:
+def test_verify_compares_every_device_by_every_method(fontana) -> None:
     result = json.loads(fontana("verify", "--json").stdout)
-    schemes = {(row["backend"], row["neighbors"], row["precision"]) for row in result["rows"]}
-    assert {("cpu", n, p) for n in ("grid", "all-pairs") for p in ("strict", "fast")} <= schemes
+    schemes = {(row["method"], row["backend"], row["neighbors"], row["precision"]) for row in result["rows"]}
+    wanted = itertools.product(verify_module.METHODS, ["cpu"], ("grid", "all-pairs"), ("strict", "fast"))
+    assert set(wanted) <= schemes
+    devices = {(row["backend"], row["device"]) for row in result["rows"]}
+    assert len(devices) == sum(device.available for device in package.devices())
     assert all(row["passed"] for row in result["rows"])
 
 
-@pytest.mark.parametrize(("name", "change"), [("density", 2.4e-7), ("acceleration", 1e-3)])
-def test_verify_notices_a_last_bit_in_strict_and_a_small_error_elsewhere(monkeypatch, name: str, change: float) -> None:
+def test_verify_takes_methods(fontana) -> None:
+    rows = json.loads(fontana("verify", "--method", "wcsph", "--json").stdout)["rows"]
+    assert {row["method"] for row in rows} == {"wcsph"}
+    assert "'sph' is not one of" in fontana("verify", "--method", "sph", code=2).stderr
+
+
+@pytest.mark.parametrize(
+    ("method", "name", "change"),
+    [("mueller", "density", 2.4e-7), ("mueller", "acceleration", 1e-3), ("dfsph", "velocity", 1e-3)],
+)
+def test_verify_notices_a_last_bit_in_strict_and_a_small_error_elsewhere(monkeypatch, method, name, change) -> None:
     """The results of the schemes are those of the library, but for one number of all."""
     plain = verify_module._results
     calls = []
 
-    def changed(*scheme: str) -> dict:
+    def changed(*scheme: object) -> dict:
         results = plain(*scheme)
         calls.append(scheme)
         if len(calls) == 2:  # the first is the reference, the second its own scheme once more
@@ -147,8 +160,8 @@ def test_verify_notices_a_last_bit_in_strict_and_a_small_error_elsewhere(monkeyp
         return results
 
     monkeypatch.setattr(verify_module, "_results", changed)
-    monkeypatch.setattr(verify_module, "_backends", lambda: (["cpu"], {}))
-    rows, _ = verify_module.compare_all()
+    monkeypatch.setattr(verify_module, "_devices", lambda: ([("cpu", 0)], {}))
+    rows, _ = verify_module.compare_all([method])
     assert [row["passed"] for row in rows] == [False, True, True, True]
     assert calls[0] == calls[1]
 

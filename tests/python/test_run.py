@@ -50,7 +50,7 @@ def test_a_run_leaves_frames_a_picture_and_a_report(fontana, drop_file: Path, tm
     assert [frame["frame"] for frame in data["frames"]] == [1, 2, 3, 4, 5, 6]
     assert data["derived"]["kinematic_viscosity"] == pytest.approx(5 / 1000)
     assert data["device"]["backend"] == "cpu"
-    assert data["profile"][0]["launches"] > 0
+    assert data["profile"]["rows"][0]["launches"] > 0
     last = data["frames"][-1]
     assert {"time", "particles", "substeps", "dt_min", "dt_max", "limit", "max_speed", "seconds"} <= last.keys()
     for file in last["files"]:

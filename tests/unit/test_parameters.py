@@ -24,8 +24,8 @@ def test_every_default_is_accepted_and_read_back():
         ("fluid.viscosity", "thick", "expected a number"),
         ("forces.gravity", 9.81, "three numbers"),
         ("time.substeps", 2.5, "whole number"),
-        ("solver.backend", "metal", "expected one of auto|cpu|opencl"),
-        ("solver.neighbors", 3, "expected one of grid|all-pairs"),
+        ("solver.backend", "metal", "expected one of auto|cpu|cuda|opencl"),
+        ("solver.neighbors", 3, "expected one of grid|tiles|all-pairs"),
         ("fluid.viscosity", (1.0, 2.0, 3.0), "expected one number"),
     ],
 )

@@ -12,6 +12,7 @@ import click
 from fontana import _core
 from fontana.formats import FORMATS
 from fontana.overrides import parse_assignment
+from fontana.roofline import gpus
 from fontana.runs.estimate import estimate, print_estimate
 from fontana.runs.manifest import Manifest
 from fontana.runs.reporters import make_reporter
@@ -67,7 +68,12 @@ def _kept_settings(assignments: tuple[str, ...]) -> list[str]:
     help="Frames between checkpoints: the most that a crash can cost.",
 )
 @click.option("--dry-run", is_flag=True, help="Say what the run will cost, and simulate nothing but a calibration.")
-@click.option("--profile", is_flag=True, help="Time every launch by name.")
+@click.option("--profile", is_flag=True, help="Time every launch by name, and show what limits it.")
+@click.option(
+    "--roofline",
+    type=click.Choice(list(gpus()), case_sensitive=False),
+    help="Estimate beside the profile the least time of each launch on this GPU.",
+)
 @click.option("--restart", is_flag=True, help="Replace what is in the folder instead of continuing.")
 @click.option("--accept-changed", is_flag=True, help="Continue although the scene is not the one of the frames so far.")
 @click.option("--picture/--no-picture", default=True, help="Draw a contact sheet at the end.")
@@ -84,6 +90,7 @@ def run(
     checkpoint_every: int,
     dry_run: bool,
     profile: bool,
+    roofline: str | None,
     restart: bool,
     accept_changed: bool,
     picture: bool,
@@ -101,12 +108,13 @@ def run(
       fontana run box --backend opencl --format bgeo --format ply
       fontana run box --set forces.gravity=0,-1.62,0 --out out/moon
       fontana run fountain_rock --dry-run
+      fontana run box --profile --roofline H100
     """
     overrides = dict(parse_assignment(text) for text in assignments)
     overrides |= _settings(backend, threads, frames)
     if neighbors:
         overrides["solver.neighbors"] = neighbors
-    if profile:
+    if profile or roofline:
         overrides["solver.profile"] = True
     loaded = load_scene(scene, overrides)
     options = RunOptions(
@@ -116,6 +124,7 @@ def run(
         restart=restart,
         accept_changed=accept_changed,
         picture=picture,
+        gpu=gpus()[roofline] if roofline else None,
         variation=["fontana", "run", scene, *_kept_settings(assignments)],
         command=["fontana", *sys.argv[1:]],
     )

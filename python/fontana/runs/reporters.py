@@ -13,6 +13,8 @@ from rich.progress import BarColumn, Progress, TextColumn
 from rich.text import Text
 
 from fontana import _core
+from fontana.bench import print_table
+from fontana.launch_profile import profile_notes, profile_table
 from fontana.runs.folder import RunFolder
 from fontana.runs.manifest import MANIFEST_NAME, Manifest
 from fontana.runs.text import clock, describe_device, describe_fluid, frame_details, length, pace_text
@@ -44,7 +46,7 @@ class Reporter:
 
 
 class JsonReporter(Reporter):
-    """One JSON object a line: {"event": "start" | "note" | "frame" | "finish" | "error", ...}."""
+    """One JSON object a line: {"event": "start" | "note" | "frame" | "profile" | "finish" | "error", ...}."""
 
     def note(self, sentence: str) -> None:
         self._emit("note", message=sentence)
@@ -66,6 +68,8 @@ class JsonReporter(Reporter):
         self._emit("frame", **record)
 
     def finish(self, simulation: _core.Simulation, folder: RunFolder, manifest: Manifest, advice: str) -> None:
+        if "profile" in manifest.data:
+            self._emit("profile", **manifest.data["profile"])
         self._emit("finish", frames=len(manifest.frames), manifest=str(folder.path / MANIFEST_NAME))
 
     def _emit(self, event: str, **values: object) -> None:
@@ -111,8 +115,12 @@ class LineReporter(Reporter):
         self.print(f"next: {advice}")
 
     def _print_profile(self, manifest: Manifest) -> None:
-        for row in manifest.data.get("profile", []):
-            self.print(f"  {row['seconds']:9.3f} s  {row['launches']:8d} x  {row['name']}")
+        if "profile" not in manifest.data:
+            return
+        self.print("")
+        print_table("", *profile_table(manifest.data["profile"]))
+        for note in profile_notes(manifest.data["profile"]):
+            self.print(note)
 
     def print(self, text: str) -> None:
         self.console.print(text, markup=False)

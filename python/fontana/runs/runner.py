@@ -10,6 +10,8 @@ from pathlib import Path
 
 from fontana import _core
 from fontana.formats import BYTES_PER_PARTICLE, write_frame
+from fontana.launch_profile import profile_of
+from fontana.roofline import Gpu
 from fontana.runs.estimate import check_memory
 from fontana.runs.folder import RunFolder
 from fontana.runs.lock import FolderLock
@@ -41,6 +43,7 @@ class RunOptions:
     restart: bool = False
     accept_changed: bool = False
     picture: bool = True
+    gpu: Gpu | None = None  # to estimate the launches of a profiled run for
     variation: list[str] = field(default_factory=list)  # the command so far, to which changes can be added
     command: list[str] = field(default_factory=list)
 
@@ -243,8 +246,7 @@ class _Run:
                 self.manifest.publish()
             return
         if self.resolved["solver"]["profile"]:
-            names = ("name", "launches", "seconds")
-            self.manifest.data["profile"] = [dict(zip(names, row, strict=True)) for row in self.simulation.profile()]
+            self.manifest.data["profile"] = profile_of(self.simulation, gpu=self.options.gpu)
         self.manifest.publish()
 
     def _draw(self) -> None:

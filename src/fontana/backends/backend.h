@@ -2,6 +2,7 @@
 // free of vendor words. A backend fills in a dozen virtual functions and a line in registry.cpp.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -10,6 +11,8 @@
 #include <string>
 #include <type_traits>
 #include <vector>
+
+#include "kernels/step_constants.h"
 
 namespace fontana {
 
@@ -25,6 +28,8 @@ struct KernelFacts {
     double bytes_per_particle, flops_per_particle;
 };
 const KernelFacts& kernel_facts(Kernel kernel);
+// By the name of a launch; null for what is not in kernel_list.def, such as a backend's sort.
+const KernelFacts* find_kernel_facts(const std::string& name);
 
 struct DeviceInfo {
     std::string backend, name, driver;
@@ -92,16 +97,29 @@ class CompiledKernel {
     virtual ~CompiledKernel() = default;
     virtual void launch(std::size_t count, KernelArguments arguments) = 0;
 };
+// What a launch goes through, which is not its thread count where a thread takes several: the first argument of every
+// kernel of the core says it, as a count or in the step's constants. 0 for another's that does not.
+inline std::uint64_t element_count(KernelArguments arguments) {
+    if (arguments.size() == 0) return 0;
+    const KernelArgument& first = *arguments.begin();
+    if (first.value_bytes() == sizeof(StepConstants))
+        return static_cast<const StepConstants*>(first.value())->particle_count;
+    std::uint32_t count = 0;
+    if (first.value_bytes() == sizeof count) std::memcpy(&count, first.value(), sizeof count);
+    return count;
+}
 
 struct ProfileRow {
     std::string name;
     std::uint64_t launches = 0;
+    std::uint64_t elements = 0;  // particles, or values of a sort, summed over the launches
     double seconds = 0.0;
 };
 
 struct BackendOptions {
     bool strict = false;   // no contracted or reassociated arithmetic
     bool profile = false;  // time every launch
+    bool tiles = false;    // cuda, opencl: candidates through local memory (backends/gpu/tiles.inl)
     int threads = 0;       // cpu: 0 is one per core
     int device = 0;        // index within the backend
 };
@@ -123,9 +141,8 @@ class Backend {
     // Runs the kernel for thread indices 0 .. count-1 (a device may round up; kernels test their index).
     virtual void launch(Kernel kernel, std::size_t count, KernelArguments arguments) = 0;
 
-    // Throws DEVICE_UNAVAILABLE with the compiler's first lines where the text does not compile, and on a backend that
-    // has no such compiler.
-    virtual std::unique_ptr<CompiledKernel> compile(const KernelText& text);
+    // Throws DEVICE_UNAVAILABLE with the compiler's first lines where the text does not compile.
+    virtual std::unique_ptr<CompiledKernel> compile(const KernelText& text) = 0;
 
     // The order that sorts `key` (count values below key_count) stably: order[k] is the old index of the k-th, and
     // start[key] .. start[key + 1] its range; `start` has key_count + 1 entries.
@@ -139,7 +156,7 @@ class Backend {
 
 // Every device of every backend, and a line for each backend that has none, with the reason.
 std::vector<DeviceInfo> list_devices();
-// name: "auto", "cpu", "opencl".
+// name: "auto", "cpu", "cuda", "opencl".
 std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options);
 
 }  // namespace fontana

@@ -3,6 +3,7 @@
 
 #include "backends/backend.h"
 #include "backends/cpu/cpu_backend.h"
+#include "backends/cuda/cuda_backend.h"
 #include "backends/opencl/opencl_backend.h"
 #include "util/error.h"
 
@@ -15,9 +16,11 @@ struct BackendEntry {
     std::function<std::unique_ptr<Backend>(const BackendOptions&)> make;
 };
 
+// In the order in which "auto" looks for a GPU.
 const std::vector<BackendEntry>& backends() {
     static const std::vector<BackendEntry> entries = {
         {"cpu", list_cpu_devices, make_cpu_backend},
+        {"cuda", list_cuda_devices, make_cuda_backend},
         {"opencl", list_opencl_devices, make_opencl_backend},
     };
     return entries;
@@ -37,6 +40,14 @@ std::unique_ptr<Backend> make_first_gpu(BackendOptions options) {
     return nullptr;
 }
 
+std::unique_ptr<Backend> require_tiles(std::unique_ptr<Backend> backend, const BackendOptions& options) {
+    const std::string& name = backend->device().backend;
+    if (options.tiles && name == "cpu")
+        fail(FONTANA_BAD_INPUT, "solver.neighbors=tiles is a choice of the backends for GPUs and the run is on " +
+                                    name + ": use solver.backend=cuda or opencl, or solver.neighbors=grid");
+    return backend;
+}
+
 }  // namespace
 
 const KernelFacts& kernel_facts(Kernel kernel) {
@@ -48,9 +59,10 @@ const KernelFacts& kernel_facts(Kernel kernel) {
     return facts[static_cast<int>(kernel)];
 }
 
-std::unique_ptr<CompiledKernel> Backend::compile(const KernelText& text) {
-    fail(FONTANA_DEVICE_UNAVAILABLE, "the backend " + device().backend + " launches the core's kernels only, not '" +
-                                         text.name + "': expected a backend with a compiler of its own, such as cpu");
+const KernelFacts* find_kernel_facts(const std::string& name) {
+    for (int k = 0; k < static_cast<int>(Kernel::count); ++k)
+        if (const KernelFacts& facts = kernel_facts(static_cast<Kernel>(k)); name == facts.name) return &facts;
+    return nullptr;
 }
 
 std::vector<DeviceInfo> list_devices() {
@@ -63,11 +75,11 @@ std::vector<DeviceInfo> list_devices() {
 std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options) {
     if (name == "auto") {
         std::unique_ptr<Backend> gpu = make_first_gpu(options);
-        return gpu ? std::move(gpu) : make_cpu_backend(options);
+        return require_tiles(gpu ? std::move(gpu) : make_cpu_backend(options), options);
     }
     for (const BackendEntry& entry : backends())
-        if (name == entry.name) return entry.make(options);
-    fail(FONTANA_BAD_INPUT, "no backend '" + name + "': expected auto, cpu or opencl");
+        if (name == entry.name) return require_tiles(entry.make(options), options);
+    fail(FONTANA_BAD_INPUT, "no backend '" + name + "': expected auto, cpu, cuda or opencl");
 }
 
 }  // namespace fontana

@@ -19,7 +19,16 @@
 #endif
 #define SQRT(a) sqrt(a)
 #define FLOOR(a) floor(a)
+#define LOCAL_POINTER __local
+#define ATOMIC_MINIMUM(p, value) atomic_min((p), (value))
+#define ATOMIC_MAXIMUM(p, value) atomic_max((p), (value))
+#define ATOMIC_ADD(p, value) atomic_add((p), (value))
 #define ATOMIC_INCREMENT(p) atomic_inc(p)
+#define GROUP_KERNEL __kernel __attribute__((reqd_work_group_size(FONTANA_GROUP_SIZE, 1, 1)))
+#define LOCAL __local
+#define LANE_INDEX ((uint)get_local_id(0))
+#define GROUP_INDEX ((uint)get_group_id(0))
+#define BARRIER() barrier(CLK_LOCAL_MEM_FENCE)
 #define MAKE_FLOAT4(x, y, z, w) ((float4)((x), (y), (z), (w)))
 
 #elif defined(__CUDACC__)
@@ -32,7 +41,16 @@
 #define THREAD_INDEX ((uint)(blockIdx.x * blockDim.x + threadIdx.x))
 #define SQRT(a) sqrtf(a)
 #define FLOOR(a) floorf(a)
+#define LOCAL_POINTER
+#define ATOMIC_MINIMUM(p, value) atomicMin((p), (value))
+#define ATOMIC_MAXIMUM(p, value) atomicMax((p), (value))
+#define ATOMIC_ADD(p, value) atomicAdd((p), (value))
 #define ATOMIC_INCREMENT(p) atomicAdd((p), 1u)
+#define GROUP_KERNEL extern "C" __global__ __launch_bounds__(FONTANA_GROUP_SIZE)
+#define LOCAL __shared__
+#define LANE_INDEX ((uint)threadIdx.x)
+#define GROUP_INDEX ((uint)blockIdx.x)
+#define BARRIER() __syncthreads()
 #define MAKE_FLOAT4(x, y, z, w) make_float4((x), (y), (z), (w))
 typedef unsigned int uint;
 

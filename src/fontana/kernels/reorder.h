@@ -1,4 +1,4 @@
-// Moving particles: into the order of the cells, and back into the order of their ids for the host.
+// Moving data: particles into the order of the cells, and back into the order of their ids for the host.
 #ifndef FONTANA_REORDER_H
 #define FONTANA_REORDER_H
 
@@ -37,6 +37,12 @@ KERNEL void words_by_id(THREAD_ARG const uint count, GLOBAL const uint* RESTRICT
                         GLOBAL uint* RESTRICT out) {
     const uint i = THREAD_INDEX;
     if (i < count) out[id[i]] = value[i];
+}
+
+// What the speed of a device's memory is measured with.
+KERNEL void copy_vectors(THREAD_ARG const uint count, GLOBAL const float4* RESTRICT from, GLOBAL float4* RESTRICT to) {
+    const uint i = THREAD_INDEX;
+    if (i < count) to[i] = from[i];
 }
 
 KERNEL void clear_words(THREAD_ARG const uint count, GLOBAL uint* RESTRICT words) {

@@ -144,7 +144,7 @@ StepConstants make_constants(const Parameters& p) {
     c.wind_coupling = static_cast<float>(p.forces_wind_coupling);
     c.drag = static_cast<float>(p.forces_drag);
     c.inverse_cell_size = 1.0f / c.support_radius;
-    c.use_grid = p.solver_neighbors == "grid" ? 1u : 0u;
+    c.use_grid = p.solver_neighbors == "all-pairs" ? 0u : 1u;
     return c;
 }
 

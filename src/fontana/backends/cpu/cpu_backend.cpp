@@ -136,7 +136,7 @@ class CpuBackend : public Backend {
         check_range(key, count * 4, 0);
         check_range(order, count * 4, 0);
         check_range(start, (key_count + 1) * 4, 0);
-        timed("sort", [&] {
+        timed("sort", count, [&] {
             sorter_.sort(pool_, reinterpret_cast<const std::uint32_t*>(data_of(key)), count, key_count,
                          reinterpret_cast<std::uint32_t*>(data_of(order)),
                          reinterpret_cast<std::uint32_t*>(data_of(start)));
@@ -167,7 +167,7 @@ class CpuBackend : public Backend {
     void run(const char* name, const CpuKernel& code, std::size_t count, KernelArguments arguments) {
         void* addresses[k_most_arguments];
         collect(name, code, arguments, addresses);
-        timed(name, [&] {
+        timed(name, element_count(arguments), [&] {
             pool_.run(count, k_grain, [&](std::size_t begin, std::size_t end) { code.run(addresses, begin, end); });
         });
     }
@@ -195,7 +195,7 @@ class CpuBackend : public Backend {
     }
 
     template <typename Work>
-    void timed(const char* name, const Work& work) {
+    void timed(const char* name, std::uint64_t elements, const Work& work) {
         if (!profile_) {
             work();
             return;
@@ -205,6 +205,7 @@ class CpuBackend : public Backend {
         ProfileRow& row = rows_[name];
         row.name = name;
         ++row.launches;
+        row.elements += elements;
         row.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
 

@@ -1,10 +1,11 @@
 #include "backends/opencl/opencl_backend.h"
 
+#include "backends/gpu/device_sort.h"
+#include "backends/gpu/tiles.h"
 #include "backends/opencl/opencl_devices.h"
 #include "backends/opencl/opencl_kernel.h"
 #include "backends/opencl/opencl_program.h"
 #include "backends/opencl/opencl_queue.h"
-#include "backends/opencl/opencl_sort.h"
 #include "util/error.h"
 
 namespace fontana {
@@ -29,10 +30,12 @@ class OpenClBackend : public Backend {
         : queue_(std::move(device), options.profile),
           strict_(options.strict),
           program_(build_opencl_program(queue_.context(), queue_.device(), core_text(), options.strict)),
-          sort_(queue_.device(), program_.get()) {
+          sort_(queue_.device().group_size, [this](const char* function, const char* label) {
+              return DeviceKernel(queue_.device(), program_.get(), function, label);
+          }) {
         for (int i = 0; i < static_cast<int>(Kernel::count); ++i) {
             const char* name = kernel_facts(static_cast<Kernel>(i)).name;
-            kernels_.emplace_back(queue_.device(), program_.get(), name, name);
+            kernels_.emplace_back(queue_.device(), program_.get(), function_of(name, options.tiles), name);
         }
     }
 
@@ -68,7 +71,7 @@ class OpenClBackend : public Backend {
     mutable CommandQueue queue_;  // collecting a profile waits for the queue, and may find the device lost
     const bool strict_;
     OpenClProgram program_;
-    DeviceSort sort_;
+    DeviceSort<CommandQueue, DeviceKernel> sort_;
     std::vector<DeviceKernel> kernels_;  // by Kernel
 };
 

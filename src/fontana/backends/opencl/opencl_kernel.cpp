@@ -32,7 +32,7 @@ void DeviceKernel::launch(CommandQueue& queue, std::size_t thread_count, KernelA
                                    " arguments and was given " + std::to_string(arguments.size()));
     std::size_t index = 0;
     for (const KernelArgument& argument : arguments) set_argument(queue, index++, argument);
-    queue.launch(kernel_.get(), thread_count, group_size_, label_);
+    queue.launch(kernel_.get(), thread_count, group_size_, label_, element_count(arguments));
 }
 
 void DeviceKernel::set_argument(CommandQueue& queue, std::size_t index, const KernelArgument& argument) {

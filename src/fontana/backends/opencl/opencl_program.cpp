@@ -2,23 +2,17 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "backends/opencl/kernel_cache.h"
+#include "backends/gpu/failed_build.h"
+#include "backends/gpu/kernel_cache.h"
+#include "backends/gpu/kernel_text.h"
 #include "backends/opencl/opencl_error.h"
-#include "util/error.h"
 
 namespace fontana {
 
-// Made by cmake/EmbedKernels.cmake.
-extern const char* const opencl_kernel_source[];
-extern const std::size_t opencl_kernel_source_count;
-
 namespace {
-
-constexpr int k_shown_log_lines = 4;
 
 // NaNs must survive, so nothing here may assume finite numbers.
 std::string build_options(const OpenClDevice& device, bool strict) {
@@ -30,21 +24,12 @@ std::string build_options(const OpenClDevice& device, bool strict) {
 }
 
 // Everything the compiled program depends on.
-std::string cache_key(const OpenClDevice& device, OpenClText text, const std::string& options) {
+std::string cache_key(const OpenClDevice& device, GpuText text, const std::string& options) {
     std::string whole;
     for (std::size_t i = 0; i < text.piece_count; ++i) whole += text.pieces[i];
     for (const std::string& part : {options, device.info.name, device.info.driver, device.platform_version})
         whole += '\0' + part;
     return KernelCache::key_of(whole);
-}
-
-// Errors are one line; the compiler's first complaints are the ones that matter.
-std::string first_lines(const std::string& log) {
-    std::istringstream lines(log);
-    std::string shown, line;
-    for (int count = 0; count < k_shown_log_lines && std::getline(lines, line); ++count)
-        shown += (shown.empty() ? "" : " | ") + line;
-    return shown;
 }
 
 std::string build_log(cl_program program, cl_device_id device) {
@@ -55,17 +40,6 @@ std::string build_log(cl_program program, cl_device_id device) {
         return "";
     log.resize(std::min(log.size(), log.find('\0')));
     return log;
-}
-
-[[noreturn]] void fail_to_build(cl_int code, cl_program program, const OpenClDevice& device, const KernelCache& cache,
-                                const std::string& key) {
-    if (code != CL_BUILD_PROGRAM_FAILURE) fail_to_start(code, device.info.name, "clBuildProgram");
-    const std::string log = build_log(program, device.id);
-    const std::string path = cache.save_log(key, log);
-    fail(FONTANA_DEVICE_UNAVAILABLE,
-         "the kernels do not compile for the OpenCL device '" + device.info.name + "' (" + device.info.driver +
-             (path.empty() ? "); its compiler says: " : "); the whole log is in " + path + " and begins: ") +
-             first_lines(log));
 }
 
 OpenClProgram build_from_binary(cl_context context, const OpenClDevice& device, const std::string& options,
@@ -92,9 +66,7 @@ std::vector<unsigned char> binary_of(cl_program program) {
 
 }  // namespace
 
-OpenClText core_text() { return {opencl_kernel_source, opencl_kernel_source_count}; }
-
-OpenClProgram build_opencl_program(cl_context context, const OpenClDevice& device, OpenClText text, bool strict) {
+OpenClProgram build_opencl_program(cl_context context, const OpenClDevice& device, GpuText text, bool strict) {
     const KernelCache cache;
     const std::string options = build_options(device, strict);
     const std::string key = cache_key(device, text, options);
@@ -106,7 +78,10 @@ OpenClProgram build_opencl_program(cl_context context, const OpenClDevice& devic
                                                              const_cast<const char**>(text.pieces), nullptr, &code));
     if (code != CL_SUCCESS) fail_to_start(code, device.info.name, "clCreateProgramWithSource");
     code = opencl().clBuildProgram(program.get(), 1, &device.id, options.c_str(), nullptr, nullptr);
-    if (code != CL_SUCCESS) fail_to_build(code, program.get(), device, cache, key);
+    if (code == CL_BUILD_PROGRAM_FAILURE)
+        fail_to_build("the OpenCL device '" + device.info.name + "' (" + device.info.driver + ")",
+                      build_log(program.get(), device.id), cache, key);
+    if (code != CL_SUCCESS) fail_to_start(code, device.info.name, "clBuildProgram");
     if (!cache.is_open()) return program;  // making a binary costs some drivers as much as the build
     const std::vector<unsigned char> binary = binary_of(program.get());
     if (!binary.empty()) cache.store(key, binary);

@@ -1,30 +1,21 @@
 #include "backends/opencl/opencl_queue.h"
 
-#include <cstdio>
-
+#include "backends/gpu/device_memory.h"
 #include "backends/opencl/opencl_error.h"
 #include "util/error.h"
 
 namespace fontana {
 namespace {
 
-constexpr std::size_t k_allocation_unit = 16;  // bytes: a float4, and a multiple of what clears it
-
-std::size_t round_up(std::size_t value, std::size_t unit) { return (value + unit - 1) / unit * unit; }
-
-std::string size_text(std::size_t bytes) {
-    constexpr std::size_t k_mebibyte = 1u << 20;
-    if (bytes < k_mebibyte) return std::to_string(bytes) + " bytes";
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1f MiB", static_cast<double>(bytes) / k_mebibyte);
-    return text;
-}
-
-void require_inside(const Buffer& buffer, std::size_t offset, std::size_t bytes, const char* action) {
-    if (offset <= buffer.bytes() && bytes <= buffer.bytes() - offset) return;
-    fail(FONTANA_INTERNAL, std::string(action) + " of " + std::to_string(bytes) + " bytes at " +
-                               std::to_string(offset) + " is beyond the buffer " + buffer.name() + ", which has " +
-                               std::to_string(buffer.bytes()));
+// An error code, CL_SUCCESS for none.
+cl_int read_seconds(const OpenClEvent& event, double& seconds) {
+    cl_ulong begin = 0, end = 0;  // ns
+    cl_int code =
+        opencl().clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_START, sizeof begin, &begin, nullptr);
+    if (code == CL_SUCCESS)
+        code = opencl().clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr);
+    if (code == CL_SUCCESS) seconds = 1e-9 * static_cast<double>(end - begin);
+    return code;
 }
 
 }  // namespace
@@ -36,7 +27,7 @@ CommandQueue::CommandQueue(OpenClDevice device, bool profile) : device_(std::mov
     const cl_command_queue_properties properties = profile ? CL_QUEUE_PROFILING_ENABLE : 0;
     queue_.reset(opencl().clCreateCommandQueue(context_.get(), device_.id, properties, &code));
     if (code != CL_SUCCESS) fail_to_start(code, device_.info.name, "clCreateCommandQueue");
-    if (profile) profile_ = std::make_unique<LaunchProfile>();
+    if (profile) profile_ = std::make_unique<LaunchProfile<OpenClEvent>>();
 }
 
 std::unique_ptr<Buffer> CommandQueue::allocate(const std::string& name, std::size_t bytes) {
@@ -45,7 +36,7 @@ std::unique_ptr<Buffer> CommandQueue::allocate(const std::string& name, std::siz
         fail(FONTANA_OUT_OF_MEMORY, "the buffer " + name + " needs " + size_text(bytes) + ", and '" +
                                         device_.info.name + "' allows " + size_text(device_.largest_allocation) +
                                         " in one piece: fewer particles, or another device");
-    const std::size_t room = round_up(std::max(bytes, k_allocation_unit), k_allocation_unit);
+    const std::size_t room = allocation_size(bytes);
     cl_int code = CL_SUCCESS;
     OpenClMemory memory(opencl().clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, room, nullptr, &code));
     check(code, "allocating", size_text(room) + " for " + name);
@@ -91,11 +82,11 @@ void CommandQueue::clear(Buffer& buffer, std::size_t bytes, const std::string& l
     check(opencl().clEnqueueFillBuffer(queue_.get(), memory_of(buffer), &zero, sizeof zero, 0, bytes, 0, nullptr,
                                        profile_ ? &event : nullptr),
           "clearing", buffer.name());
-    note(event, label);
+    note(event, label, bytes / sizeof zero);
 }
 
-void CommandQueue::launch(cl_kernel kernel, std::size_t thread_count, std::size_t group_size,
-                          const std::string& label) {
+void CommandQueue::launch(cl_kernel kernel, std::size_t thread_count, std::size_t group_size, const std::string& label,
+                          std::uint64_t elements) {
     require_alive();
     if (thread_count == 0) return;
     const std::size_t global_size = round_up(thread_count, group_size);
@@ -103,7 +94,7 @@ void CommandQueue::launch(cl_kernel kernel, std::size_t thread_count, std::size_
     check(opencl().clEnqueueNDRangeKernel(queue_.get(), kernel, 1, nullptr, &global_size, &group_size, 0, nullptr,
                                           profile_ ? &event : nullptr),
           "running the kernel", label);
-    note(event, label);
+    note(event, label, elements);
 }
 
 void CommandQueue::finish() {
@@ -117,15 +108,15 @@ std::vector<ProfileRow> CommandQueue::profile() {
     return profile_->rows();
 }
 
-void CommandQueue::note(cl_event event, const std::string& label) {
+void CommandQueue::note(cl_event event, const std::string& label, std::uint64_t elements) {
     if (!event) return;
-    profile_->add(label, OpenClEvent(event));
+    profile_->add(label, elements, OpenClEvent(event));
     if (profile_->is_full()) collect_profile();
 }
 
 void CommandQueue::collect_profile() {
     finish();
-    check(profile_->collect(), "reading the time of", "a launch");
+    check(profile_->collect(read_seconds), "reading the time of", "a launch");
 }
 
 void CommandQueue::check(cl_int code, const char* doing, const std::string& name) {

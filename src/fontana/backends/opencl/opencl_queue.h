@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "backends/backend.h"
+#include "backends/gpu/launch_profile.h"
 #include "backends/opencl/opencl_api.h"
 #include "backends/opencl/opencl_devices.h"
-#include "backends/opencl/opencl_profile.h"
 
 namespace fontana {
 
@@ -41,8 +41,10 @@ class CommandQueue {
     void read(const Buffer& from, void* to, std::size_t bytes, std::size_t offset);
     void copy(const Buffer& from, Buffer& to, std::size_t bytes);
     void clear(Buffer& buffer, std::size_t bytes, const std::string& label);
-    // Runs a kernel whose arguments are set. `label` is its name in the profile and in errors.
-    void launch(cl_kernel kernel, std::size_t thread_count, std::size_t group_size, const std::string& label);
+    // Runs a kernel whose arguments are set. `label` is its name in the profile and in errors, `elements` what it goes
+    // through (ProfileRow).
+    void launch(cl_kernel kernel, std::size_t thread_count, std::size_t group_size, const std::string& label,
+                std::uint64_t elements);
     void finish();
     std::vector<ProfileRow> profile();
 
@@ -52,14 +54,14 @@ class CommandQueue {
     void require_alive() const;
 
  private:
-    void note(cl_event event, const std::string& label);
+    void note(cl_event event, const std::string& label, std::uint64_t elements);
     void collect_profile();
 
     OpenClDevice device_;
     OpenClContext context_;
     OpenClQueue queue_;
-    std::unique_ptr<LaunchProfile> profile_;  // null: no profile wanted
-    std::string lost_;                        // what was said when the device was lost
+    std::unique_ptr<LaunchProfile<OpenClEvent>> profile_;  // null: no profile wanted
+    std::string lost_;                                     // what was said when the device was lost
 };
 
 }  // namespace fontana

@@ -1,4 +1,4 @@
-#include "backends/opencl/kernel_cache.h"
+#include "backends/gpu/kernel_cache.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

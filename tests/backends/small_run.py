@@ -1,10 +1,12 @@
-"""A small simulation through OpenCL: the program the tests of the backend run in a process.
+"""A small simulation on a GPU backend: the program the tests of these backends run in a process.
 
-    small_run.py NAME=VALUE...               runs it once, with these parameters beside those below
-    small_run.py calls LAYER FUNCTION...     runs it once for each function, and counts the calls of that function
-    small_run.py sweep LAYER CODE FUNCTION NAME=VALUE...
+    small_run.py BACKEND NAME=VALUE...            runs it once, with these parameters beside those below
+    small_run.py BACKEND calls LAYER FUNCTION...  runs it once for each function, and counts the calls of that function
+    small_run.py BACKEND sweep LAYER CODE FUNCTION NAME=VALUE...
                                              lets the first call of FUNCTION fail with CODE, then the second, and so on
                                              until a run has no call left to fail
+
+LAYER is what makes calls fail: a library between program and driver, or the driver itself.
 
 Each run prints one line of JSON: {"digest": of all results, "launches": names}, or {"error": class, "sentence": text}.
 """
@@ -26,7 +28,6 @@ def small_run(parameters):
     next, whose substeps are chosen from the motion."""
     simulation = _core.Simulation()
     for name, value in {
-        "solver.backend": "opencl",
         "solver.profile": True,
         "fluid.surface_tension": 0.07,
         "forces.wind": (1.0, 0.0, 0.0),
@@ -56,7 +57,8 @@ def digest_after_two_frames(simulation, early_position, late_position):
         digest = hashlib.sha256(simulation.count_neighbors())
         for name in ("position", "velocity", "acceleration", "density", "pressure"):
             digest.update(simulation.read(name))
-        return {"digest": digest.hexdigest(), "launches": sorted(row[0] for row in simulation.profile())}
+        simulation.measure_copy(256)
+        return {"digest": digest.hexdigest(), "launches": sorted(row.name for row in simulation.profile())}
     except _core.DeviceLost as first:
         # What a lost device held is gone: every later call must say so again.
         try:
@@ -75,17 +77,17 @@ def report(parameters):
     print(json.dumps(line), flush=True)
 
 
-def count(layer, *functions):
+def count(backend, layer, *functions):
     for function in functions:
         layer.arm_fault(function.encode(), 0, 0)
-        small_run({})
+        small_run({"solver.backend": backend})
         print(json.dumps({"function": function, "calls": layer.count_calls()}), flush=True)
 
 
-def sweep(layer, code, function, *settings):
+def sweep(backend, layer, code, function, *settings):
     for call in itertools.count(1):
         layer.arm_fault(function.encode(), call, int(code))
-        report(parsed(settings))
+        report({"solver.backend": backend} | parsed(settings))
         if layer.count_calls() < call:
             return
 
@@ -103,11 +105,12 @@ def open_layer(path):
 
 
 def main():
-    mode, *arguments = sys.argv[1:] or [""]
-    if mode in ("calls", "sweep"):
-        (count if mode == "calls" else sweep)(open_layer(arguments[0]), *arguments[1:])
+    backend, *arguments = sys.argv[1:]
+    if arguments and arguments[0] in ("calls", "sweep"):
+        mode, path, *rest = arguments
+        (count if mode == "calls" else sweep)(backend, open_layer(path), *rest)
     else:
-        report(parsed(sys.argv[1:]))
+        report({"solver.backend": backend} | parsed(arguments))
 
 
 if __name__ == "__main__":

@@ -18,19 +18,18 @@ KERNEL void sort_histogram(const uint count, GLOBAL const uint* RESTRICT key, GL
 }
 
 // Scans each block of FONTANA_GROUP_SIZE * VALUES_PER_THREAD values in place and writes its total.
-__attribute__((reqd_work_group_size(FONTANA_GROUP_SIZE, 1, 1)))
-KERNEL void sort_scan_blocks(const uint count, GLOBAL uint* RESTRICT value, GLOBAL uint* RESTRICT block_total) {
-    __local uint total[FONTANA_GROUP_SIZE];
-    const uint lane = (uint)get_local_id(0);
+GROUP_KERNEL void sort_scan_blocks(const uint count, GLOBAL uint* RESTRICT value, GLOBAL uint* RESTRICT block_total) {
+    LOCAL uint total[FONTANA_GROUP_SIZE];
+    const uint lane = LANE_INDEX;
     const uint begin = min(count, THREAD_INDEX * VALUES_PER_THREAD);
     const uint end = min(count, begin + VALUES_PER_THREAD);
     uint sum = 0u;
     for (uint k = begin; k < end; ++k) sum += value[k];
     total[lane] = sum;
     for (uint distance = 1u; distance < FONTANA_GROUP_SIZE; distance *= 2u) {
-        barrier(CLK_LOCAL_MEM_FENCE);
+        BARRIER();
         const uint before = lane >= distance ? total[lane - distance] : 0u;
-        barrier(CLK_LOCAL_MEM_FENCE);
+        BARRIER();
         total[lane] += before;
     }
     uint running = total[lane] - sum;
@@ -39,7 +38,7 @@ KERNEL void sort_scan_blocks(const uint count, GLOBAL uint* RESTRICT value, GLOB
         value[k] = running;
         running += here;
     }
-    if (lane == FONTANA_GROUP_SIZE - 1u) block_total[get_group_id(0)] = total[lane];
+    if (lane == FONTANA_GROUP_SIZE - 1u) block_total[GROUP_INDEX] = total[lane];
 }
 
 KERNEL void sort_add_offsets(const uint count, GLOBAL uint* RESTRICT value, GLOBAL const uint* RESTRICT block_offset) {
