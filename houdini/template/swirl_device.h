@@ -17,7 +17,7 @@ struct SwirlSettings {
 
 class SwirlDevice {
  public:
-    // backend: "auto", "cpu", "opencl" or "cuda". Starting a device and compiling for it takes long: make one and keep it.
+    // backend: "auto", "cpu", "opencl" or "cuda". Starting a device and compiling for it takes long: keep it.
     // Throws fontana::Error with DEVICE_UNAVAILABLE and the reason.
     explicit SwirlDevice(const std::string& backend);
 
