@@ -96,7 +96,6 @@ class Session {
     std::int64_t start_frame_ = 1;
     std::int64_t position_ = 0;   // the frame that lies on the device
     bool is_positioned_ = false;  // false: what lies there is no whole frame
-    bool input_wavers_ = false;   // gave other points for a frame when asked again
     std::uint64_t steady_key_ = 0, edit_key_ = 0;
     FrameHost* host_ = nullptr;  // during a cook
     std::int64_t cook_from_ = 0, cook_to_ = 0;
