@@ -35,7 +35,7 @@ std::uint64_t combined(std::uint64_t a, std::uint64_t b, std::int64_t c) {
 
 std::uint64_t Session::key_of_points(const SourcePoints& points) { return key_of(points); }
 
-CookResult Session::cook(std::int64_t frame, std::int64_t start_frame, FrameHost& host) noexcept try {
+CookResult Session::cook(std::int64_t frame, std::int64_t start_frame, FrameHost& host) try {
     host_ = &host;
     stop_ = false;
     if (start_frame != start_frame_) reset();

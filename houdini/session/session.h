@@ -41,8 +41,9 @@ class Session {
     // Tests hand in a step that fails as they wish.
     explicit Session(StepFrame step_frame = fontana_step_frame) : step_frame_(step_frame) {}
 
-    // One thread at a time. Shows `frame`, or the start frame where that is later. Throws nothing.
-    CookResult cook(std::int64_t frame, std::int64_t start_frame, FrameHost& host) noexcept;
+    // One thread at a time. Shows `frame`, or the start frame where that is later. Whatever goes wrong is in the
+    // result.
+    CookResult cook(std::int64_t frame, std::int64_t start_frame, FrameHost& host);
     // Forgets every frame; the next cook begins anew.
     void reset();
     // From any thread: the cook under way ends at its next substep, as after Esc.
