@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 
 #include "checks.h"
 #include "fontana.h"
@@ -19,19 +20,26 @@ std::map<std::string, std::vector<double>> numbers;
 std::map<std::string, std::string> texts;
 // The keys of the collider that had any last: times (s), and three coordinates each.
 std::vector<double> key_times, key_centres;
+std::mutex noting;  // other groups of checks cook on several threads
+
+template <typename Note>
+void note(const Note& write) {
+    const std::lock_guard<std::mutex> lock(noting);
+    write();
+}
 
 }  // namespace
 
 extern "C" fontana_status fontana_set_number(fontana_simulation* simulation, const char* name, const double* values,
                                              size_t count) {
-    numbers[name].assign(values, values + count);
+    note([&] { numbers[name].assign(values, values + count); });
     using Function = fontana_status (*)(fontana_simulation*, const char*, const double*, size_t);
     static const auto real = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "fontana_set_number"));
     return real(simulation, name, values, count);
 }
 
 extern "C" fontana_status fontana_set_text(fontana_simulation* simulation, const char* name, const char* text) {
-    texts[name] = text;
+    note([&] { texts[name] = text; });
     using Function = fontana_status (*)(fontana_simulation*, const char*, const char*);
     static const auto real = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "fontana_set_text"));
     return real(simulation, name, text);
@@ -39,10 +47,11 @@ extern "C" fontana_status fontana_set_text(fontana_simulation* simulation, const
 
 extern "C" fontana_status fontana_set_collider_keys(fontana_simulation* simulation, size_t index, size_t count,
                                                     const double* time, const double* centre) {
-    if (count) {
+    note([&] {
+        if (!count) return;
         key_times.assign(time, time + count);
         key_centres.assign(centre, centre + 3 * count);
-    }
+    });
     using Function = fontana_status (*)(fontana_simulation*, size_t, size_t, const double*, const double*);
     static const auto real = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "fontana_set_collider_keys"));
     return real(simulation, index, count, time, centre);
