@@ -33,7 +33,7 @@ def group_entries(group: str) -> str:
 
 def entry(parameter) -> str:
     """What a panel's row says, and its range; the id is the row's name there."""
-    label = f"{parameter.label} ({parameter.unit})" if parameter.unit else parameter.label
+    label = f"{parameter.label} ({parameter.unit.replace('**', '^')})" if parameter.unit else parameter.label
     sentences = [parameter.doc, unit_text(parameter)]
     return "\n".join(
         [

@@ -35,7 +35,7 @@ std::uint64_t combined(std::uint64_t a, std::uint64_t b, std::int64_t c) {
 
 std::uint64_t Session::key_of_points(const SourcePoints& points) { return key_of(points); }
 
-CookResult Session::cook(std::int64_t frame, std::int64_t start_frame, FrameHost& host) noexcept try {
+CookResult Session::cook(std::int64_t frame, std::int64_t start_frame, FrameHost& host) try {
     host_ = &host;
     stop_ = false;
     if (start_frame != start_frame_) reset();
@@ -59,7 +59,7 @@ CookResult Session::cook(std::int64_t frame, std::int64_t start_frame, FrameHost
 void Session::reset() {
     records_.clear();
     history_.clear();
-    is_positioned_ = input_wavers_ = false;
+    is_positioned_ = false;
 }
 
 void Session::follow_edits(std::int64_t frame, FrameHost& host) {
@@ -69,7 +69,7 @@ void Session::follow_edits(std::int64_t frame, FrameHost& host) {
     if (edit_key != edit_key_ || keys_have_changed(host)) reset();
     edit_key_ = edit_key;
     const FrameRecord* known = record(frame);
-    if (!known || steady_key_ || input_wavers_) return;
+    if (!known || steady_key_) return;
     const PointsWanted wanted = frame == start_frame_ ? PointsWanted::all : PointsWanted::continuous;
     // What an input gives for a frame changes by an edit alone. Where the edit began is not known: all is simulated
     // anew.
@@ -88,16 +88,14 @@ bool Session::keys_have_changed(FrameHost& host) const {
     return false;
 }
 
-// A lost device is replaced once in a cook, an edit found on the way starts over once.
+// A lost device is replaced once in a cook. An edit found on the way starts over, with nothing left to differ from.
 void Session::go_to(std::int64_t frame, FrameHost& host) {
-    for (bool is_replaced = false, is_restarted = false;;) {
+    for (bool is_replaced = false;;) {
         try {
             if (records_.empty()) begin(host);
             return seek(frame, host);
         } catch (const UpstreamEdited&) {
             reset();
-            input_wavers_ = is_restarted;
-            is_restarted = true;
         } catch (const SolverError& error) {
             is_positioned_ = false;
             if (error.status() != FONTANA_DEVICE_LOST || is_replaced) throw;
@@ -151,7 +149,7 @@ void Session::advance(FrameHost& host) {
     record.keyed_key = key_of(settings, Keyed::yes);
     record.points_key = points_key_of(points);
     const FrameRecord* known = this->record(next);
-    if (known && known->points_key != record.points_key && !input_wavers_) throw UpstreamEdited();
+    if (known && known->points_key != record.points_key) throw UpstreamEdited();
     is_positioned_ = false;
     apply(settings.settings);
     place_colliders(settings.colliders);
@@ -271,8 +269,6 @@ CookResult Session::show_last_complete(std::int64_t frame, FrameHost& host) {
 }
 
 std::string Session::memory_note() const {
-    if (input_wavers_)
-        return "the input gives other points each time a frame is cooked, so going back is not exact; cache the input";
     if (history_.stride() == 1) return "";
     return "the memory limit is reached: every frame in " + std::to_string(history_.stride()) +
            " is kept, and going back simulates the others again; write the result to a File Cache";

@@ -41,8 +41,9 @@ class Session {
     // Tests hand in a step that fails as they wish.
     explicit Session(StepFrame step_frame = fontana_step_frame) : step_frame_(step_frame) {}
 
-    // One thread at a time. Shows `frame`, or the start frame where that is later. Throws nothing.
-    CookResult cook(std::int64_t frame, std::int64_t start_frame, FrameHost& host) noexcept;
+    // One thread at a time. Shows `frame`, or the start frame where that is later. Whatever goes wrong is in the
+    // result.
+    CookResult cook(std::int64_t frame, std::int64_t start_frame, FrameHost& host);
     // Forgets every frame; the next cook begins anew.
     void reset();
     // From any thread: the cook under way ends at its next substep, as after Esc.
@@ -96,7 +97,6 @@ class Session {
     std::int64_t start_frame_ = 1;
     std::int64_t position_ = 0;   // the frame that lies on the device
     bool is_positioned_ = false;  // false: what lies there is no whole frame
-    bool input_wavers_ = false;   // gave other points for a frame when asked again
     std::uint64_t steady_key_ = 0, edit_key_ = 0;
     FrameHost* host_ = nullptr;  // during a cook
     std::int64_t cook_from_ = 0, cook_to_ = 0;

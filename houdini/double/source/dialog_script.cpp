@@ -1,5 +1,7 @@
 #include "dialog_script.h"
 
+#include <algorithm>
+#include <cctype>
 #include <set>
 #include <stdexcept>
 

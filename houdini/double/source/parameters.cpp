@@ -1,6 +1,8 @@
 // Panels and their values.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "OP/OP_GraphProxy.h"

@@ -83,7 +83,7 @@ def _remarks(results: dict) -> list[str]:
         "brackets; at the end both had the same bytes",
         "processor time is that of all threads, which other programs disturb less",
         f"in brackets beside the seconds: the thesis's ({THESIS_HARDWARE}), of a run whose length it does not give",
-        "all pairs are cut off where two frames would take longer than the budget",
+        "a scheme is cut off where five pairs of frames would take longer than the budget",
         f"CPU: {machine['cpu']}, {threads} thread{'s' * (threads != 1)}; {machine['os']}",
     ]
     if results["overhead_percent_100k"] is not None:

@@ -21,7 +21,7 @@ from fontana.bench._timing import SUBSTEPS_PER_FRAME, significant, statistics
 from fontana.tables import suggestion
 
 WARM_UP_FRAMES = 2
-MOST_PAIRS = 30
+LEAST_PAIRS, MOST_PAIRS = 5, 30
 GOAL_COUNT = 100_000
 _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
 
@@ -46,10 +46,10 @@ _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
 @click.option(
     "--budget",
     type=click.FloatRange(0, min_open=True),
-    default=10.0,
+    default=20.0,
     show_default=True,
     metavar="SECONDS",
-    help="For each number; a scheme that would need more for one pair of frames is cut off.",
+    help="For each number; a scheme that would need more for five pairs of frames is cut off.",
 )
 @click.option(
     "--scenes",
@@ -70,7 +70,7 @@ def command(path: Path, counts: list[int], budget: float, scene_names: list[str]
     \b
     Examples:
       fontana bench houdini
-      fontana bench houdini --counts 100000 --scenes box --budget 60 --json houdini.json
+      fontana bench houdini --counts 100000 --scenes box --budget 90 --json houdini.json
     """
     for name in scene_names or [""]:
         if name not in BENCH_SCENES:
@@ -143,7 +143,7 @@ def _cell(
     budget, threads, count = settings["budget_seconds"], settings["threads"], rows[-1]["particles"]
     try:
         expected = _predict(scheme, name, rows, driver, settings)
-        if 2.0 * expected > budget:
+        if 2.0 * LEAST_PAIRS * expected > budget:
             return {"state": "cut off", "predicted_frame_seconds": significant(expected)}
         heard = _ask(scheme, name, count, driver, (WARM_UP_FRAMES, MOST_PAIRS, budget), threads)
     except _core.FontanaError as error:
