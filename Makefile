@@ -4,7 +4,7 @@ BIN := .venv/bin
 # The environment's own cmake, ninja and compilers' helpers come first.
 export PATH := $(CURDIR)/$(BIN):$(PATH)
 
-.PHONY: demo test build unit sanitize blender lint format bench clean
+.PHONY: demo test build unit sanitize blender lint format bench houdini-package clean
 
 # The main job on the best device present: a rock falls into a fountain.
 demo: build
@@ -43,6 +43,10 @@ format: .venv/ready
 # The thesis's Tables 1 and 2 anew.
 bench: build
 	fontana bench thesis --out benchmarks/results/local
+
+# The Houdini package, a folder and a zip in out/houdini.
+houdini-package: build
+	python tools/make_houdini_package.py
 
 .venv/ready:
 	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Fontana needs Python 3.11 or later")'

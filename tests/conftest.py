@@ -1,6 +1,7 @@
 """One test text for every backend: a test that takes `backend` or `scheme` runs on each."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -65,6 +66,25 @@ def scheme(request, use_backend):
 def opencl_device():
     """For tests of the OpenCL backend alone."""
     require_backend("opencl")
+
+
+@pytest.fixture(scope="session")
+def native_build():
+    """Builds a target of CMakeLists.txt with the release preset and returns its file: native_build("io_test")."""
+    root = Path(__file__).parents[1]
+    cmake = shutil.which("cmake") or pytest.fail("no cmake on PATH: `make build` puts one into .venv/bin")
+
+    def run(*arguments):
+        result = subprocess.run([cmake, *arguments], cwd=root, capture_output=True, text=True)
+        assert result.returncode == 0, result.stdout[-4000:] + result.stderr
+
+    def build(target):
+        run("--build", "--preset", "release", "-j", "2", "--target", target)
+        files = [path for path in (root / "build" / "release").rglob(f"{target}*") if path.is_file()]
+        return next(path for path in files if path.name in (target, f"{target}.so"))
+
+    run("--preset", "release", "--log-level=WARNING")
+    return build
 
 
 @pytest.fixture

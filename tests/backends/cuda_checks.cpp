@@ -12,7 +12,7 @@ struct Device {
     using Kernel = fontana::CudaKernel;
 
     Queue make_queue(bool profile) { return Queue(fontana::find_cuda_devices().front(), profile); }
-    Program build(Queue& queue) { return fontana::build_cuda_program(queue, false); }
+    Program build(Queue& queue) { return fontana::build_cuda_program(queue, fontana::core_text(), false); }
     Kernel kernel(Queue& queue, Program& program, const char* function, const char* label) {
         return Kernel(queue, program.get(), function, label);
     }

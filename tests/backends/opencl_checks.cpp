@@ -12,7 +12,9 @@ struct Device {
     using Kernel = fontana::DeviceKernel;
 
     Queue make_queue(bool profile) { return Queue(fontana::find_opencl_devices().front(), profile); }
-    Program build(Queue& queue) { return fontana::build_opencl_program(queue.context(), queue.device(), false); }
+    Program build(Queue& queue) {
+        return fontana::build_opencl_program(queue.context(), queue.device(), fontana::core_text(), false);
+    }
     Kernel kernel(Queue& queue, Program& program, const char* function, const char* label) {
         return Kernel(queue.device(), program.get(), function, label);
     }

@@ -71,13 +71,14 @@ def remarks(results: dict) -> list[str]:
     used = next((device for device in results["devices"] if device["backend"] == "opencl" and device["is_gpu"]), None)
     if used:
         lines.append(f"GPU: {used['name']}, {used['driver']}")
-    for reason in _failures(results):
+    for reason in failures(results):
         lines.append(f"failed: {reason}")
     if results["state"] == "interrupted":
         lines.append("interrupted: these are the numbers until then")
     return lines
 
 
-def _failures(results: dict) -> list[str]:
+def failures(results: dict) -> list[str]:
+    """What went wrong in cells, each sentence once."""
     cells = [cell for rows in results["scenes"].values() for row in rows for cell in row["cells"].values()]
     return list(dict.fromkeys(cell["reason"] for cell in cells if cell["state"] == "failed"))

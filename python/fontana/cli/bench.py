@@ -29,5 +29,6 @@ def bench() -> None:
     \b
     Examples:
       fontana bench thesis                        four schemes in two scenes: the thesis's tables anew
+      fontana bench houdini                       the solver node on a double of the HDK beside the library
       fontana bench plot out/bench/thesis.json    its figures from those numbers
     """

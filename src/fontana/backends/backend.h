@@ -79,15 +79,33 @@ class KernelArgument {
 
 using KernelArguments = std::initializer_list<KernelArgument>;
 
-// What a launch goes through, which is not its thread count where a thread takes several: every kernel's first argument
-// says it, as a count or in the step's constants.
+struct CpuKernel;
+
+// A kernel that is not in kernel_list.def: a plugin's or an experiment's own, in the dialect of kernels/. It comes
+// twice out of one file: as the loop of the cpu backend (backends/cpu/kernel_loop.h) and as text for devices, which
+// cmake/EmbedKernels.cmake flattens. Both must outlive what is compiled from them.
+struct KernelText {
+    const char* name;  // of the function; profiles and errors show it
+    const CpuKernel* loop;
+    const char* const* pieces;
+    std::size_t piece_count;
+};
+
+// A KernelText ready to launch, as Backend::launch does. Used only while the backend lives that compiled it.
+class CompiledKernel {
+ public:
+    virtual ~CompiledKernel() = default;
+    virtual void launch(std::size_t count, KernelArguments arguments) = 0;
+};
+// What a launch goes through, which is not its thread count where a thread takes several: the first argument of every
+// kernel of the core says it, as a count or in the step's constants. 0 for another's that does not.
 inline std::uint64_t element_count(KernelArguments arguments) {
     if (arguments.size() == 0) return 0;
     const KernelArgument& first = *arguments.begin();
     if (first.value_bytes() == sizeof(StepConstants))
         return static_cast<const StepConstants*>(first.value())->particle_count;
     std::uint32_t count = 0;
-    std::memcpy(&count, first.value(), std::min(sizeof count, first.value_bytes()));
+    if (first.value_bytes() == sizeof count) std::memcpy(&count, first.value(), sizeof count);
     return count;
 }
 
@@ -122,6 +140,9 @@ class Backend {
 
     // Runs the kernel for thread indices 0 .. count-1 (a device may round up; kernels test their index).
     virtual void launch(Kernel kernel, std::size_t count, KernelArguments arguments) = 0;
+
+    // Throws DEVICE_UNAVAILABLE with the compiler's first lines where the text does not compile.
+    virtual std::unique_ptr<CompiledKernel> compile(const KernelText& text) = 0;
 
     // The order that sorts `key` (count values below key_count) stably: order[k] is the old index of the k-th, and
     // start[key] .. start[key + 1] its range; `start` has key_count + 1 entries.

@@ -22,6 +22,7 @@ namespace {
 
 // Particles a thread takes at a time: long enough to hide the counter, short enough to share out a splash evenly.
 constexpr std::size_t k_grain = 512;
+constexpr int k_most_arguments = 16;
 
 class CpuBuffer : public Buffer {
  public:
@@ -122,12 +123,15 @@ class CpuBackend : public Backend {
     }
 
     void launch(Kernel kernel, std::size_t count, KernelArguments arguments) override {
-        const CpuKernel& code = kernels_[static_cast<std::size_t>(kernel)];
-        void* addresses[16];
-        collect(kernel, code, arguments, addresses);
-        timed(kernel_facts(kernel).name, element_count(arguments), [&] {
-            pool_.run(count, k_grain, [&](std::size_t begin, std::size_t end) { code.run(addresses, begin, end); });
-        });
+        run(kernel_facts(kernel).name, kernels_[static_cast<std::size_t>(kernel)], count, arguments);
+    }
+
+    std::unique_ptr<CompiledKernel> compile(const KernelText& text) override {
+        if (text.loop->argument_count > k_most_arguments)
+            fail(FONTANA_BAD_INPUT, std::string("the kernel '") + text.name + "' has " +
+                                        std::to_string(text.loop->argument_count) + " arguments: expected at most " +
+                                        std::to_string(k_most_arguments));
+        return std::make_unique<Compiled>(*this, text);
     }
 
     void sort(const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start) override {
@@ -150,13 +154,32 @@ class CpuBackend : public Backend {
     }
 
  private:
+    class Compiled : public CompiledKernel {
+     public:
+        Compiled(CpuBackend& backend, const KernelText& text) : backend_(backend), text_(text) {}
+        void launch(std::size_t count, KernelArguments arguments) override {
+            backend_.run(text_.name, *text_.loop, count, arguments);
+        }
+
+     private:
+        CpuBackend& backend_;
+        KernelText text_;
+    };
+
+    void run(const char* name, const CpuKernel& code, std::size_t count, KernelArguments arguments) {
+        void* addresses[k_most_arguments];
+        collect(name, code, arguments, addresses);
+        timed(name, element_count(arguments), [&] {
+            pool_.run(count, k_grain, [&](std::size_t begin, std::size_t end) { code.run(addresses, begin, end); });
+        });
+    }
+
     static void check_range(const Buffer& buffer, std::size_t bytes, std::size_t offset) {
         if (bytes > buffer.bytes() || offset > buffer.bytes() - bytes)
             fail(FONTANA_INTERNAL, "access beyond the end of buffer '" + buffer.name() + "'");
     }
 
-    static void collect(Kernel kernel, const CpuKernel& code, KernelArguments arguments, void** addresses) {
-        const char* name = kernel_facts(kernel).name;
+    static void collect(const char* name, const CpuKernel& code, KernelArguments arguments, void** addresses) {
         if (static_cast<int>(arguments.size()) != code.argument_count)
             fail(FONTANA_INTERNAL, std::string("kernel '") + name + "' was launched with " +
                                        std::to_string(arguments.size()) + " arguments, not " +

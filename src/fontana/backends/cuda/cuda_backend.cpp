@@ -11,11 +11,25 @@
 namespace fontana {
 namespace {
 
+class CompiledFromText : public CompiledKernel {
+ public:
+    CompiledFromText(CudaStream& stream, CudaModule program, const char* name)
+        : stream_(stream), program_(std::move(program)), kernel_(stream, program_.get(), name, name) {}
+
+    void launch(std::size_t count, KernelArguments arguments) override { kernel_.launch(stream_, count, arguments); }
+
+ private:
+    CudaStream& stream_;
+    CudaModule program_;
+    CudaKernel kernel_;
+};
+
 class CudaBackend : public Backend {
  public:
     CudaBackend(CudaDevice device, const BackendOptions& options)
         : stream_(std::move(device), options.profile),
-          program_(build_cuda_program(stream_, options.strict)),
+          strict_(options.strict),
+          program_(build_cuda_program(stream_, core_text(), options.strict)),
           sort_(stream_.device().group_size, [this](const char* function, const char* label) {
               return CudaKernel(stream_, program_.get(), function, label);
           }) {
@@ -41,6 +55,10 @@ class CudaBackend : public Backend {
     void launch(Kernel kernel, std::size_t count, KernelArguments arguments) override {
         kernels_[static_cast<std::size_t>(kernel)].launch(stream_, count, arguments);
     }
+    std::unique_ptr<CompiledKernel> compile(const KernelText& text) override {
+        CudaModule program = build_cuda_program(stream_, {text.pieces, text.piece_count}, strict_);
+        return std::make_unique<CompiledFromText>(stream_, std::move(program), text.name);
+    }
     void sort(const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start) override {
         sort_.sort(stream_, key, count, key_count, order, start);
     }
@@ -50,6 +68,7 @@ class CudaBackend : public Backend {
 
  private:
     mutable CudaStream stream_;  // collecting a profile waits for the stream, and may find the device lost
+    const bool strict_;
     CudaModule program_;
     DeviceSort<CudaStream, CudaKernel> sort_;
     std::vector<CudaKernel> kernels_;  // by Kernel

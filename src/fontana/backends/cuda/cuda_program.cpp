@@ -8,7 +8,6 @@
 #include "backends/cuda/nvrtc_program.h"
 #include "backends/gpu/failed_build.h"
 #include "backends/gpu/kernel_cache.h"
-#include "backends/gpu/kernel_text.h"
 #include "util/error.h"
 
 namespace fontana {
@@ -26,10 +25,10 @@ std::vector<std::string> build_options(const CudaDevice& device, bool strict) {
     return options;
 }
 
-std::string whole_text() {
-    std::string text;
-    for (std::size_t i = 0; i < gpu_kernel_text_count; ++i) text += gpu_kernel_text[i];
-    return text;
+std::string whole(GpuText text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.piece_count; ++i) result += text.pieces[i];
+    return result;
 }
 
 // Everything the compiled program depends on.
@@ -73,12 +72,12 @@ CompiledImages compile(const CudaDevice& device, const std::string& text, const 
 
 }  // namespace
 
-CudaModule build_cuda_program(const CudaStream& stream, bool strict) {
+CudaModule build_cuda_program(const CudaStream& stream, GpuText pieces, bool strict) {
     const CudaDevice& device = stream.device();
     const CurrentContext current(*stream.context());
     if (current.code() != CUDA_SUCCESS) fail_to_start_cuda(current.code(), device.info.name, "cuCtxPushCurrent");
     const KernelCache cache;
-    const std::string text = whole_text();
+    const std::string text = whole(pieces);
     const std::vector<std::string> options = build_options(device, strict);
     const std::string key = cache_key(device, text, options);
     CudaModule program;

@@ -11,11 +11,25 @@
 namespace fontana {
 namespace {
 
+class CompiledFromText : public CompiledKernel {
+ public:
+    CompiledFromText(CommandQueue& queue, OpenClProgram program, const char* name)
+        : queue_(queue), program_(std::move(program)), kernel_(queue.device(), program_.get(), name, name) {}
+
+    void launch(std::size_t count, KernelArguments arguments) override { kernel_.launch(queue_, count, arguments); }
+
+ private:
+    CommandQueue& queue_;
+    OpenClProgram program_;
+    DeviceKernel kernel_;
+};
+
 class OpenClBackend : public Backend {
  public:
     OpenClBackend(OpenClDevice device, const BackendOptions& options)
         : queue_(std::move(device), options.profile),
-          program_(build_opencl_program(queue_.context(), queue_.device(), options.strict)),
+          strict_(options.strict),
+          program_(build_opencl_program(queue_.context(), queue_.device(), core_text(), options.strict)),
           sort_(queue_.device().group_size, [this](const char* function, const char* label) {
               return DeviceKernel(queue_.device(), program_.get(), function, label);
           }) {
@@ -41,6 +55,11 @@ class OpenClBackend : public Backend {
     void launch(Kernel kernel, std::size_t count, KernelArguments arguments) override {
         kernels_[static_cast<std::size_t>(kernel)].launch(queue_, count, arguments);
     }
+    std::unique_ptr<CompiledKernel> compile(const KernelText& text) override {
+        OpenClProgram program =
+            build_opencl_program(queue_.context(), queue_.device(), {text.pieces, text.piece_count}, strict_);
+        return std::make_unique<CompiledFromText>(queue_, std::move(program), text.name);
+    }
     void sort(const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start) override {
         sort_.sort(queue_, key, count, key_count, order, start);
     }
@@ -50,6 +69,7 @@ class OpenClBackend : public Backend {
 
  private:
     mutable CommandQueue queue_;  // collecting a profile waits for the queue, and may find the device lost
+    const bool strict_;
     OpenClProgram program_;
     DeviceSort<CommandQueue, DeviceKernel> sort_;
     std::vector<DeviceKernel> kernels_;  // by Kernel

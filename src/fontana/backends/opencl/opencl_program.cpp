@@ -24,12 +24,12 @@ std::string build_options(const OpenClDevice& device, bool strict) {
 }
 
 // Everything the compiled program depends on.
-std::string cache_key(const OpenClDevice& device, const std::string& options) {
-    std::string text;
-    for (std::size_t i = 0; i < gpu_kernel_text_count; ++i) text += gpu_kernel_text[i];
+std::string cache_key(const OpenClDevice& device, GpuText text, const std::string& options) {
+    std::string whole;
+    for (std::size_t i = 0; i < text.piece_count; ++i) whole += text.pieces[i];
     for (const std::string& part : {options, device.info.name, device.info.driver, device.platform_version})
-        text += '\0' + part;
-    return KernelCache::key_of(text);
+        whole += '\0' + part;
+    return KernelCache::key_of(whole);
 }
 
 std::string build_log(cl_program program, cl_device_id device) {
@@ -66,17 +66,16 @@ std::vector<unsigned char> binary_of(cl_program program) {
 
 }  // namespace
 
-OpenClProgram build_opencl_program(cl_context context, const OpenClDevice& device, bool strict) {
+OpenClProgram build_opencl_program(cl_context context, const OpenClDevice& device, GpuText text, bool strict) {
     const KernelCache cache;
     const std::string options = build_options(device, strict);
-    const std::string key = cache_key(device, options);
+    const std::string key = cache_key(device, text, options);
     OpenClProgram cached = build_from_binary(context, device, options, cache.load(key));
     if (cached) return cached;
 
     cl_int code = CL_SUCCESS;
-    OpenClProgram program(opencl().clCreateProgramWithSource(
-        context, static_cast<cl_uint>(gpu_kernel_text_count),
-        const_cast<const char**>(static_cast<const char* const*>(gpu_kernel_text)), nullptr, &code));
+    OpenClProgram program(opencl().clCreateProgramWithSource(context, static_cast<cl_uint>(text.piece_count),
+                                                             const_cast<const char**>(text.pieces), nullptr, &code));
     if (code != CL_SUCCESS) fail_to_start(code, device.info.name, "clCreateProgramWithSource");
     code = opencl().clBuildProgram(program.get(), 1, &device.id, options.c_str(), nullptr, nullptr);
     if (code == CL_BUILD_PROGRAM_FAILURE)
