@@ -57,7 +57,7 @@ def command(particles: int, seconds: float, threads: int, repeats: int, peer_pyt
 
 
 def run_ours(per_metre: int, seconds: float, threads: int) -> dict:
-    """The same tank: their walls' particles, 0.75 spacings outside of it, are where our planes have their first layer."""
+    """The same tank: where their walls have particles, 0.75 spacings outside, our planes have their first layer."""
     simulation = _core.Simulation()
     spacing = 1.0 / per_metre
     frames = 10
