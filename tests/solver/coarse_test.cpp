@@ -1,5 +1,5 @@
-// The coarse matrices against what defines them: P^T K P, one column at a time, with the kernels of the solve itself for
-// K = G^T G and sums over cells for P. All kernels run as plain C++ here.
+// The coarse matrices against what defines them: P^T K P, one column at a time, with the kernels of the solve itself
+// for K = G^T G and sums over cells for P. All kernels run as plain C++ here.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
