@@ -89,13 +89,14 @@ def native_build():
 
 @pytest.fixture
 def make_simulation():
-    """A bare simulation: parameters by name with dots as double underscores, no colliders, no emitters."""
+    """A bare simulation by the thesis's method unless fluid__method says otherwise: parameters by name with dots as
+    double underscores, no colliders, no emitters."""
 
     def make(backend="cpu", neighbors="grid", **parameters):
         simulation = _core.Simulation()
         simulation.set("solver.backend", backend)
         simulation.set("solver.neighbors", neighbors)
-        for name, value in parameters.items():
+        for name, value in ({"fluid__method": "mueller"} | parameters).items():
             simulation.set(name.replace("__", "."), value)
         return simulation
 

@@ -86,7 +86,7 @@ FONTANA_API fontana_status fontana_set_number(fontana_simulation*, const char* n
 FONTANA_API fontana_status fontana_get_number(fontana_simulation*, const char* name, double* values, size_t count);
 FONTANA_API fontana_status fontana_set_text(fontana_simulation*, const char* name, const char* text);
 FONTANA_API fontana_status fontana_get_text(fontana_simulation*, const char* name, const char** text);
-/* "thesis": the defaults of the thesis's Houdini node. */
+/* "thesis": the thesis's method and the defaults of its Houdini node. */
 FONTANA_API fontana_status fontana_apply_preset(fontana_simulation*, const char* preset);
 
 /* Values the solver derives from the parameters, for hosts to echo. */
@@ -94,7 +94,7 @@ typedef struct fontana_derived {
     double support_radius;      /* m */
     double particle_mass;       /* kg */
     double kinematic_viscosity; /* m^2/s */
-    double speed_of_sound;      /* m/s, sqrt of the pressure constant */
+    double speed_of_sound;      /* m/s, sqrt of the pressure constant; 0 for a method that does not use it */
     double frame_duration;      /* s */
     double self_density;        /* kg/m^3: what one particle alone contributes to its own density */
     double particle_radius;     /* m of the scene, half the distance at rest: Houdini's pscale */

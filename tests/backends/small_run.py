@@ -29,6 +29,7 @@ def small_run(parameters):
     simulation = _core.Simulation()
     for name, value in {
         "solver.profile": True,
+        "fluid.method": "mueller",
         "fluid.surface_tension": 0.07,
         "forces.wind": (1.0, 0.0, 0.0),
         "forces.wind_coupling": 0.5,

@@ -54,7 +54,7 @@ static void write_file(const char* path, const unsigned char* content, size_t by
 }
 
 static void damage_changes_nothing(void) {
-    fontana_simulation *s = saved_fountain("mueller"), *twin = make_fountain(1);
+    fontana_simulation *s = saved_fountain("mueller"), *twin = make_fountain_by("mueller", 1);
     OK(fontana_load_checkpoint(twin, path_of(state_path)));
     const uint64_t before = state_hash(s);
     size_t bytes = 0;

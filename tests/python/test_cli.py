@@ -118,7 +118,7 @@ def test_json_has_the_error_too(fontana) -> None:
 
 def test_dry_run_says_the_costs_and_writes_nothing(fontana, drop_file: Path, tmp_path: Path) -> None:
     text = fontana("run", drop_file, "--dry-run").stdout
-    for word in ("216 particles", "memory", "disk", "substeps", "acoustic", "M particle-substeps/s", "run it:"):
+    for word in ("216 particles", "memory", "disk", "substeps", "convergence", "M particle-substeps/s", "run it:"):
         assert word in text
     result = json.loads(fontana("run", drop_file, "--dry-run", "--json").stdout)
     assert result["particles"] == 216

@@ -27,6 +27,7 @@ def profiled(fontana, drop: dict, tmp_path: Path):
     """Runs a scene whose particles become more in frame 4, and returns the events by name."""
 
     def call(*options: object) -> dict[str, list[dict]]:
+        drop["fluid"]["method"] = "mueller"  # each of its kernels runs once a substep over all particles
         drop["emitters"].append(LATER_BLOCK)
         (tmp_path / "scene.json").write_text(json.dumps(drop))
         lines = fontana("run", "scene.json", "--json", "--no-picture", *options).stdout.splitlines()
@@ -74,12 +75,13 @@ def test_figures_follow_from_launches_and_stated_costs(backend, profiled, tmp_pa
 
 
 def test_people_get_a_table_and_what_it_assumes(fontana, drop_file: Path) -> None:
-    shown = fontana("run", drop_file, "--no-picture", "--roofline", "MI300X").stdout
+    mueller = ("--set", "fluid.method=mueller")
+    shown = fontana("run", drop_file, "--no-picture", "--roofline", "MI300X", *mueller).stdout
     assert re.search(r"^ *launch .*bytes/particle .*GB/s .*GFLOP/s .*of copy .*estimate, ms *$", shown, re.MULTILINE)
     assert re.search(r"^ *fluid_force +\d+ .*%", shown, re.MULTILINE)
     assert "counted for 30 neighbours out of 216 candidates" in shown
     assert re.search(r"estimate: the least time on AMD Instinct MI300X .*\(https://\S+.*; not measured", shown)
-    assert "profile" not in fontana("run", drop_file, "--json", "--no-picture", "--restart").stdout
+    assert "profile" not in fontana("run", drop_file, "--json", "--no-picture", "--restart", *mueller).stdout
 
 
 def test_all_pairs_states_no_cost(backend, profiled) -> None:
@@ -91,6 +93,7 @@ def test_all_pairs_states_no_cost(backend, profiled) -> None:
 def test_what_was_before_is_taken_off(backend) -> None:
     simulation = _core.Simulation()
     simulation.set("solver.backend", backend)
+    simulation.set("fluid.method", "mueller")
     simulation.set("solver.profile", True)
     simulation.set("time.substeps", 3)
     simulation.set("time.timestep", 3e-4)

@@ -39,6 +39,7 @@ def test_thesis_preset_has_the_defaults_of_its_node():
     simulation = _core.Simulation()
     simulation.apply_preset("thesis")
     expected = {
+        "fluid.method": "mueller",
         "fluid.rest_density": 1000,
         "fluid.pressure_constant": 10,
         "fluid.viscosity": 0.15,

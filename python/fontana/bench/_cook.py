@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 
 from fontana import _core
-from fontana.bench._scenes import SPACING, BenchScene
+from fontana.bench._scenes import METHOD, SPACING, BenchScene
 from fontana.bench._schemes import Scheme
 from fontana.bench._timing import SUBSTEPS_PER_FRAME
 from fontana.tables import COLLIDERS, parameters
@@ -86,7 +86,7 @@ def _settings(scene: BenchScene, scheme: Scheme, dt: float, threads: int) -> lis
         "time.substeps": SUBSTEPS_PER_FRAME,
         "solver.threads": threads,
     }
-    texts = {"solver.backend": scheme.backend, "solver.neighbors": scheme.neighbors}
+    texts = {"fluid.method": METHOD, "solver.backend": scheme.backend, "solver.neighbors": scheme.neighbors}
     lines = [f"number {path} {value!r}" for path, value in numbers.items()]
     lines += [f"node_number {_token(path)} 0 {value!r}" for path, value in numbers.items()]
     lines += [f"text {path} {value}" for path, value in texts.items()]

@@ -15,7 +15,7 @@ from fontana.runs.text import clock, data_size, describe_device, describe_fluid,
 from fontana.scene import Scene
 
 CALIBRATION_SECONDS = 3.0
-LIMITS = ("advection", "acceleration", "acoustic", "viscosity", "surface_tension")
+LIMITS = ("advection", "acceleration", "acoustic", "viscosity", "surface_tension", "convergence")
 CALIBRATION_PARTICLES = 300_000
 # The share of a device's memory that particles may take: sorting, emission and files need some for a while, and the
 # system of a CPU the rest.

@@ -30,16 +30,19 @@ def data_size(count: float) -> str:
 
 
 def describe_fluid(simulation: _core.Simulation) -> str:
-    """Density, both viscosities and the speed of sound, with units."""
+    """The method, density, both viscosities and, where there is one, the speed of sound, with units."""
     derived = simulation.derived()
     parts = [
+        simulation.get("fluid.method"),
         show(simulation.get("fluid.rest_density"), "kg/m**3"),
         f"viscosity {show(simulation.get('fluid.viscosity'), 'Pa*s')}"
         f" (kinematic {show(derived.kinematic_viscosity, 'm**2/s')})",
     ]
     if simulation.get("fluid.surface_tension"):
         parts.append(f"surface tension {show(simulation.get('fluid.surface_tension'), 'N/m')}")
-    return ", ".join([*parts, f"speed of sound {show(derived.speed_of_sound, 'm/s')}"])
+    if derived.speed_of_sound:
+        parts.append(f"speed of sound {show(derived.speed_of_sound, 'm/s')}")
+    return ", ".join(parts)
 
 
 def describe_device(simulation: _core.Simulation) -> str:

@@ -171,6 +171,7 @@ const std::string& get_text(const Parameters& parameters, const std::string& nam
 
 void apply_preset(Parameters& parameters, const std::string& preset) {
     if (preset != "thesis") fail(FONTANA_BAD_INPUT, "no preset '" + preset + "': expected 'thesis'");
+    parameters.fluid_method = "mueller";
     parameters.fluid_rest_density = 1000.0;
     parameters.fluid_pressure_constant = 10.0;
     parameters.fluid_negative_pressure = true;

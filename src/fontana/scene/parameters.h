@@ -35,7 +35,7 @@ void set_text(Parameters& parameters, const std::string& name, const std::string
 void get_number(const Parameters& parameters, const std::string& name, double* values, std::size_t count);
 const std::string& get_text(const Parameters& parameters, const std::string& name);
 
-// "thesis": the defaults of the thesis's node (III.8.1). Sets only what differs from the table's defaults.
+// "thesis": its method and the defaults of its node (III.8.1). Leaves all else as it is.
 void apply_preset(Parameters& parameters, const std::string& preset);
 
 // The word of `words` with the smallest edit distance to `word`.

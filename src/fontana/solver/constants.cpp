@@ -115,13 +115,15 @@ double pcisph_delta(const Parameters& p) {
     return 0.5 / squares;
 }
 
+bool is_stiff(const Parameters& p) { return p.fluid_method == "mueller" || p.fluid_method == "wcsph"; }
+
 fontana_derived derive(const Parameters& p) {
     const double support = support_radius(p);
     fontana_derived derived{};
     derived.support_radius = support;
     derived.particle_mass = particle_mass(p);
     derived.kinematic_viscosity = p.fluid_viscosity / p.fluid_rest_density;
-    derived.speed_of_sound = std::sqrt(p.fluid_pressure_constant);
+    derived.speed_of_sound = is_stiff(p) ? std::sqrt(p.fluid_pressure_constant) : 0.0;
     derived.frame_duration = frame_duration(p);
     const double own_value =
         uses_spline(p) ? spline_scale(p, support) : smoothing_scales(support).poly6 * std::pow(support, 6);

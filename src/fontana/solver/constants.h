@@ -27,6 +27,8 @@ double frame_duration(const Parameters& parameters);
 double density_error_tolerance(const Parameters& parameters);
 // m^2 for a full neighbourhood: 1 / (2 (|sum V grad W|^2 + sum |V grad W|^2)), over a lattice at the spacing (PCISPH).
 double pcisph_delta(const Parameters& parameters);
+// Whether the pressure follows from the density by an equation of state: such a fluid has a speed of sound.
+bool is_stiff(const Parameters& parameters);
 fontana_derived derive(const Parameters& parameters);
 
 // Everything but what changes by the substep: counts, dt and the grid.

@@ -39,9 +39,8 @@ fontana_time_step_limits time_step_limits(const Parameters& p, double speed, dou
     fontana_time_step_limits limits{};
     limits.advection = factor * quotient(0.4 * d, speed);
     limits.acceleration = factor * 0.25 * std::sqrt(quotient(2.0 * d, acceleration));
-    const bool is_stiff = p.fluid_method == "mueller" || p.fluid_method == "wcsph";
-    limits.acoustic = is_stiff ? factor * quotient(0.4 * d, std::sqrt(p.fluid_pressure_constant)) : k_infinity;
-    limits.convergence = is_stiff ? k_infinity : factor * convergence_rate(p) * d;
+    limits.acoustic = is_stiff(p) ? factor * quotient(0.4 * d, std::sqrt(p.fluid_pressure_constant)) : k_infinity;
+    limits.convergence = is_stiff(p) ? k_infinity : factor * convergence_rate(p) * d;
     limits.viscosity = factor * quotient(0.1 * d * d * density, p.fluid_viscosity);
     limits.surface_tension =
         factor * 0.4 * std::sqrt(quotient(density * d * d * d, 2.0 * k_pi * p.fluid_surface_tension));

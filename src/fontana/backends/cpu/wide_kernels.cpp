@@ -94,7 +94,9 @@ class Candidates {
             }
             if (!is_last_) break;
         }
-        store(x_ + count_, k_far - Vec{});  // what the last vector holds beyond the last candidate is no neighbour
+        // What the last vector holds beyond the last candidate is no neighbour, nor a NaN, which times zero stays one.
+        store(x_ + count_, k_far - Vec{});
+        for (float* column : {y_, z_, w_}) store(column + count_, Vec{});
     }
 
     void take(uint first, uint end) {
