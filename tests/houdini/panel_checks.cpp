@@ -149,7 +149,7 @@ void every_row_says_what_the_table_says(const SOP_Node& solver, const fontana_pa
 void the_switches() {
     BlockScene scene(2);
     SOP_Node& solver = plain_solver(scene);
-    set_int(solver, "solver_backend", 2);
+    set_int(solver, "solver_backend", 3);  // auto, cpu, cuda, opencl
     set_int(solver, "use_gpu", 0);
     set_int(solver, "use_scene_rate", 1);
     hdk_double::cook(solver, 1);
