@@ -15,7 +15,7 @@ import pytest
 from command_line import error_line
 from matplotlib.image import imread
 
-from fontana.cache import Cache
+from fontana.runs.cache import Cache
 
 pytestmark = pytest.mark.blender
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 import trimesh
 from command_line import error_line, fontana_command
-from splash_scene import FRAMES
+from small_scenes import SPLASH_FRAMES as FRAMES
 
 from fontana import bgeo
 

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from command_line import error_line, fontana_command
 from pxr import Usd, UsdGeom, UsdValidation
-from splash_scene import FRAMES
+from small_scenes import SPLASH_FRAMES as FRAMES
 
-from fontana.cache import Cache
 from fontana.export import usd
+from fontana.runs.cache import Cache
 from fontana.surface import SurfaceSettings, reconstruct
 
 
