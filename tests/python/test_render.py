@@ -130,6 +130,12 @@ def test_what_cannot_be_is_refused_in_a_sentence(fontana, drop_cache, arguments,
     assert words in error_line(fontana("render", drop_cache, *arguments, code=2))
 
 
+def test_a_name_that_is_too_long_is_a_sentence(fontana, drop_cache):
+    line = error_line(fontana("render", drop_cache, "-o", f"{'x' * 300}.png", "--frames", 1, *SMALL, "--quiet", code=6))
+    assert line.startswith("fontana: cannot create a file in the folder of 'xxx")
+    assert line.endswith("File name too long")
+
+
 def test_a_folder_without_a_run_is_refused(fontana, tmp_path):
     (tmp_path / "empty").mkdir()
     assert "it is not the folder of a run" in error_line(fontana("render", "empty", "-o", "x.gif", code=2))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import re
 from pathlib import Path
 from typing import Protocol
@@ -63,7 +64,7 @@ class Pictures:
 
     def has(self, frame: int, stamp: str) -> bool:
         path = self.numbered(frame)
-        if self.restart or not path.exists():
+        if self.restart or not os.path.exists(path):  # pathlib's raises for a name that is too long
             return False
         found = _read_stamp(path)
         if found is None:

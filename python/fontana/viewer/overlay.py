@@ -13,6 +13,7 @@ from fontana.viewer.look import ACCENT, ERROR, TEXT, WARNING
 from fontana.viewer.model import ViewerModel
 
 _MOST_KERNELS = 8
+_LONGEST_FACT = "pressure iterations"  # of the words that come and go
 _LEGEND_STEPS = 64
 _LEGEND_HEIGHT = 4.0  # in heights of the font, without its padding
 _HAND, _HAND_EDGE = (1.0, 1.0, 1.0, 0.95), (0.0, 0.0, 0.0, 0.45)
@@ -51,6 +52,11 @@ def draw_statistics(model: ViewerModel, box: Box, draw_seconds: float) -> None:
         return
     _begin("statistics", box, (1.0, 0.0))
     if imgui.begin_table("facts", 2, imgui.TableFlags_.sizing_fixed_fit.value):
+        # A column fits itself to its words one picture late, and would cut a longer one until then.
+        for column in (0, 1):
+            words = [row[column] for row in rows]
+            width = max(imgui.calc_text_size(text).x for text in [*words, _LONGEST_FACT])
+            imgui.table_setup_column(f"##{column}", imgui.TableColumnFlags_.width_fixed.value, width)
         for name, text in rows:
             imgui.table_next_row()
             imgui.table_next_column()
