@@ -52,7 +52,9 @@ def test_the_same_command_again_draws_what_is_missing_and_nothing_else(fontana, 
     before = pictures(tmp_path / "p")
     (tmp_path / "p" / "x.02.png").unlink()
     times = {name: (tmp_path / "p" / name).stat().st_mtime_ns for name in ("x.01.png", "x.04.png")}
-    assert drawn_of(fontana(*command)) == (3, 6)
+    again = fontana(*command)
+    assert drawn_of(again) == (3, 6)
+    assert json.loads(again.stdout.splitlines()[-1])["files"] == [f"p/x.{frame:02d}.png" for frame in range(1, 7)]
     assert {name: (tmp_path / "p" / name).stat().st_mtime_ns for name in times} == times
     assert pictures(tmp_path / "p")["x.02.png"] == before["x.02.png"]
 

@@ -114,13 +114,12 @@ def mesh(
     progress = make_progress(as_json, quiet)
     try:
         result = make_sequence(cache, chosen, make, options, progress)
-        files = _span(target, chosen)
         if target.suffix in usd.SUFFIXES and result.there:
             stage = target.folder / f"{target.name}.usda"
             usd.write_clips_stage(stage, target.pattern.name, result.there, _layout(cache, result.there))
-            files = f"{stage}, which plays {files}"
+            progress.note(f"{stage} plays what is there")
         result.raise_if_incomplete()
-        progress.finish(files)
+        progress.finish([target.frame(frame) for frame in chosen])
     finally:
         progress.close()
 
@@ -176,10 +175,10 @@ def export(
             make_sequence(
                 cache, chosen, make, SequenceOptions(target, make.recorded(), jobs, restart), progress
             ).raise_if_incomplete()
-            progress.finish(_span(target, chosen))
+            progress.finish([target.frame(frame) for frame in chosen])
         else:
             write_whole(cache, chosen, _points_writer(cache, chosen, target), target, progress)
-            progress.finish(str(target.whole))
+            progress.finish([target.whole])
     finally:
         progress.close()
 
@@ -191,8 +190,3 @@ def _points_writer(cache: Cache, frames: list[int], target: Target) -> AbstractC
 
 def _layout(cache: Cache, frames: list[int]) -> usd.StageLayout:
     return usd.StageLayout(cache.scene.name, cache.frame_rate, cache.unit, frames[0], frames[-1])
-
-
-def _span(target: Target, frames: list[int]) -> str:
-    last = f" to {frames[-1]:04d}" if len(frames) > 1 else ""
-    return f"{target.frame(frames[0])}{last}"

@@ -15,7 +15,6 @@ from fontana.render.outputs import open_output
 from fontana.runs.cache import Cache
 from fontana.runs.frame_numbers import FRAMES_HELP
 from fontana.runs.progress import make_progress
-from fontana.runs.text import data_size
 
 _LOOK = Look()
 
@@ -102,12 +101,6 @@ def render(
     output = open_output(out, options.size, options.fps, len(options.frames), restart)
     progress = make_progress(as_json, quiet)
     try:
-        progress.finish(_files(render_frames(footage, options, output, progress)))
+        progress.finish(render_frames(footage, options, output, progress))
     finally:
         progress.close()
-
-
-def _files(paths: list[Path]) -> str:
-    """ "p/x.0001.png to x.0048.png (3.2 MB)"."""
-    last = f" to {paths[-1].name}" if len(paths) > 1 else ""
-    return f"{paths[0]}{last} ({data_size(sum(path.stat().st_size for path in paths))})"

@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import sys
 import time
+from collections.abc import Sequence
+from pathlib import Path
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from fontana.runs.text import clock
+from fontana.runs.text import clock, data_size
 
 
 class Quiet:
@@ -27,8 +29,8 @@ class Quiet:
     def skip(self, frame: int, reason: str) -> None:
         """A frame cannot be read."""
 
-    def finish(self, files: str) -> None:
-        """All is on disk."""
+    def finish(self, files: Sequence[Path]) -> None:
+        """All is on disk, in these files."""
 
     def close(self) -> None:
         """Leaves the terminal as it was; safe to call twice."""
@@ -58,11 +60,11 @@ class Lines(Quiet):
         self._left -= 1
         self.note(f"frame {frame} is skipped: {reason}")
 
-    def finish(self, files: str) -> None:
+    def finish(self, files: Sequence[Path]) -> None:
         self.close()
         seconds = time.monotonic() - self._begin
         self._print(f"done: {self._made} of {self._total} frames made now, in {clock(seconds)}")
-        self._print(f"  files  {files}")
+        self._print(f"  files  {_describe(files)}")
 
     def _print(self, text: str) -> None:
         self.console.print(text, markup=False)
@@ -111,11 +113,17 @@ class Json(Quiet):
     def skip(self, frame: int, reason: str) -> None:
         self._emit("skipped", frame=frame, message=reason)
 
-    def finish(self, files: str) -> None:
-        self._emit("finish", files=files)
+    def finish(self, files: Sequence[Path]) -> None:
+        self._emit("finish", files=[str(path) for path in files])
 
     def _emit(self, event: str, **values: object) -> None:
         print(json.dumps({"event": event} | values), flush=True)
+
+
+def _describe(files: Sequence[Path]) -> str:
+    """ "water/w.0001.ply to w.0048.ply (3.2 MB)"."""
+    last = f" to {files[-1].name}" if len(files) > 1 else ""
+    return f"{files[0]}{last} ({data_size(sum(path.stat().st_size for path in files))})"
 
 
 def make_progress(as_json: bool, quiet: bool) -> Quiet:
