@@ -16,6 +16,7 @@ _MOST_KERNELS = 8
 _LONGEST_FACT = "pressure iterations"  # of the words that come and go
 _LEGEND_STEPS = 64
 _LEGEND_HEIGHT = 4.0  # in heights of the font, without its padding
+_STATISTICS_WIDTH = 22.0  # likewise, with its longest rows
 _HAND, _HAND_EDGE = (1.0, 1.0, 1.0, 0.95), (0.0, 0.0, 0.0, 0.45)
 _MARGIN = 0.7  # likewise, around what lies over the picture
 
@@ -152,7 +153,8 @@ def draw_messages(model: ViewerModel, box: Box) -> None:
     if not rows:
         return
     em = imgui.get_font_size()
-    width = max(12 * em, min(0.5 * box.width, 42 * em))
+    beside = _STATISTICS_WIDTH if model.shows_statistics else 0.0
+    width = max(12 * em, min(box.width - (beside + 3 * _MARGIN) * em, 42 * em))
     imgui.set_next_window_pos(ImVec2(box.x + _MARGIN * em, box.y + _MARGIN * em))
     imgui.set_next_window_size(ImVec2(width, 0))
     imgui.set_next_window_bg_alpha(0.92)
@@ -163,13 +165,13 @@ def draw_messages(model: ViewerModel, box: Box) -> None:
     imgui.push_text_wrap_pos(0.0)
     for text, color in rows:
         imgui.text_colored(ImVec4(*color), text.replace("%", "%%"))
-    imgui.pop_text_wrap_pos()
     if failure:
         if imgui.button("Restart"):
             model.restart()
         if not failure.is_final:
             imgui.same_line()
             imgui.text_colored(ImVec4(*WARNING), "or change what it names, and it goes on")
+    imgui.pop_text_wrap_pos()
     imgui.end()
 
 
