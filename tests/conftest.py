@@ -1,5 +1,6 @@
 """One test text for every backend: a test that takes `backend` or `scheme` runs on each."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -9,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import fontana_command
+from small_scenes import DROP
 
 from fontana import _core
 
@@ -136,6 +138,22 @@ def fontana(tmp_path: Path):
         return done
 
     return call
+
+
+@pytest.fixture(scope="session")
+def finished_drop(tmp_path_factory) -> Path:
+    """The folder of a run of six frames; to look at, not to change."""
+    folder = tmp_path_factory.mktemp("drop")
+    (folder / "drop.json").write_text(json.dumps(DROP))
+    words = ("run", "drop.json", "--out", "drop", "--backend", "cpu", "--no-picture", "--quiet")
+    subprocess.run(fontana_command(*words), cwd=folder, check=True)
+    return folder / "drop"
+
+
+@pytest.fixture
+def drop_cache(finished_drop: Path, tmp_path: Path) -> Path:
+    """A copy of it to spoil."""
+    return Path(shutil.copytree(finished_drop, tmp_path / "drop"))
 
 
 @pytest.fixture(scope="session")

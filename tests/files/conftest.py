@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from command_line import fontana_command
-from splash_scene import SPLASH
+from small_scenes import SPLASH
 
 
 @pytest.fixture(scope="session")

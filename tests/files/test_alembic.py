@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from alembic3d import Abc, AbcGeom
 
-from fontana.cache import Cache
+from fontana.runs.cache import Cache
 
 
 def schema_of(path: Path):

@@ -15,7 +15,7 @@ import pytest
 from command_line import error_line
 from matplotlib.image import imread
 
-from fontana.cache import Cache
+from fontana.runs.cache import Cache
 
 pytestmark = pytest.mark.blender
 
@@ -94,4 +94,4 @@ def test_an_empty_frame_is_an_empty_volume(fontana, empty: Path, bpy_folder: Pat
 
 def test_without_openvdb_a_sentence_says_what_to_install(fontana, splash: Path) -> None:
     line = error_line(fontana("export", splash, "-o", "v.vdb", code=2))
-    assert "openvdb, which is not here: pip install bpy" in line
+    assert "openvdb, which is not here; pip install 'fontana[vdb]'" in line

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 import trimesh
 from command_line import error_line, fontana_command
-from splash_scene import FRAMES
+from small_scenes import SPLASH_FRAMES as FRAMES
 
 from fontana import bgeo
 
@@ -30,7 +30,7 @@ def test_a_surface_a_frame_beside_the_run(fontana, splash: Path, tmp_path: Path)
     done = fontana("mesh", "splash", "-o", "water/w.####.ply", *COARSE)
     names = {f"w.{frame:04d}.ply" for frame in range(1, FRAMES + 1)}
     assert {path.name for path in (tmp_path / "water").iterdir()} == names | {"w.ply.json"}
-    assert "w.0001.ply to 0012" in done.stdout and "frame   12  " in done.stdout
+    assert "w.0001.ply to w.0012.ply (" in done.stdout and "frame   12  " in done.stdout
     for name in names:
         assert trimesh.load(tmp_path / "water" / name).is_watertight
     again = fontana("mesh", "splash", "-o", "water/w.ply", *COARSE)

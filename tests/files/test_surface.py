@@ -14,8 +14,8 @@ import trimesh
 from pysplashsurf import bgeo as foreign_bgeo
 
 from fontana import bgeo
-from fontana.cache import Cache
 from fontana.export.mesh_files import ENCODERS
+from fontana.runs.cache import Cache
 from fontana.surface import Mesh, SurfaceSettings, reconstruct
 
 RADIUS = 0.025

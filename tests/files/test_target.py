@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 
 from fontana import _core
-from fontana.cache import Cache, frame_list
 from fontana.export.target import parse_target
+from fontana.runs.cache import Cache
+from fontana.runs.frame_numbers import frame_list
 
 
 @pytest.mark.parametrize("text", ["out/w.ply", "out/w.####.ply", "out/w####.PLY", "out/w.#.ply"])
@@ -22,8 +23,9 @@ def test_a_name_with_or_without_number(text: str) -> None:
 def test_a_range_is_a_list_of_frames(splash: Path) -> None:
     cache = Cache(splash)
     assert cache.select("2-4,9, 3") == [2, 3, 4, 9]
+    assert cache.select("1-9/4,12") == [1, 5, 9, 12]
     assert cache.select(None) == list(range(1, 13))
-    for text in ("", "-3", "1-", "0", "13", "1-2-3", "99999999999999"):
+    for text in ("", "-3", "1-", "0", "13", "1-2-3", "1-9/0", "3/2", "99999999999999"):
         with pytest.raises(_core.BadInput, match="--frames"):
             cache.select(text)
 

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from command_line import error_line, fontana_command
 from pxr import Usd, UsdGeom, UsdValidation
-from splash_scene import FRAMES
+from small_scenes import SPLASH_FRAMES as FRAMES
 
-from fontana.cache import Cache
 from fontana.export import usd
+from fontana.runs.cache import Cache
 from fontana.surface import SurfaceSettings, reconstruct
 
 
@@ -74,7 +74,7 @@ def test_a_stage_saved_in_parts_is_the_same(splash: Path, tmp_path: Path, monkey
 def test_surfaces_are_layers_that_a_stage_plays(fontana, splash: Path, tmp_path: Path) -> None:
     fontana("mesh", splash, "-o", "w.usdc", "--frames", "1-5", "--cell-size", 1.5, "--quiet")
     done = fontana("mesh", splash, "-o", "w.usdc", "--frames", "4-6", "--cell-size", 1.5)
-    assert "w.usda, which plays" in done.stdout
+    assert "w.usda plays what is there" in done.stdout
     stage = Usd.Stage.Open(str(tmp_path / "w.usda"))
     assert_layout(stage, 1, 6)
     assert_layout(Usd.Stage.Open(str(tmp_path / "w.0003.usdc")), 3, 3)

@@ -113,5 +113,5 @@ def test_a_run_is_drawn_frame_by_frame(fontana, drop_file: Path, tmp_path: Path)
 
 
 def test_no_run_no_picture(tmp_path: Path) -> None:
-    with pytest.raises(package.BadInput, match="no finished frames"):
+    with pytest.raises(package.BadInput, match="not the folder of a run"):
         contact_sheet(tmp_path)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import resource
-import shutil
 import signal
 import subprocess
 from importlib import resources
@@ -20,7 +19,7 @@ from PIL import Image
 import fontana as package
 from fontana.gl.camera import Camera
 from fontana.gl.context import create_headless_context
-from fontana.render.options import parse_camera, parse_frames, parse_size
+from fontana.render.options import parse_camera, parse_size
 
 SMALL = ("--size", "96x64", "--samples", 1)
 FRAME_COUNT = 6
@@ -28,30 +27,18 @@ FRAME_COUNT = 6
 pytestmark = pytest.mark.usefixtures("opengl")
 
 
-@pytest.fixture(scope="module")
-def finished_run(tmp_path_factory) -> Path:
-    """A run of six frames."""
-    from conftest import DROP
-
-    folder = tmp_path_factory.mktemp("run")
-    (folder / "drop.json").write_text(json.dumps(DROP))
-    call = fontana_command("run", folder / "drop.json", "--out", folder / "drop", "--quiet", "--no-picture")
-    subprocess.run(call, check=True)
-    return folder / "drop"
-
-
-@pytest.fixture
-def run_folder(finished_run: Path, tmp_path: Path) -> Path:
-    """A copy of it to spoil."""
-    return Path(shutil.copytree(finished_run, tmp_path / "drop"))
+def drawn_of(done: subprocess.CompletedProcess) -> tuple[int, int]:
+    """How many pictures a command with --json drew, of how many it was asked for."""
+    events = [json.loads(line) for line in done.stdout.splitlines()]
+    return sum(event["event"] == "frame" for event in events), events[0]["frames"]
 
 
 def pictures(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in sorted(folder.glob("*.png"))}
 
 
-def test_pictures_are_numbered_and_have_the_size(fontana, run_folder, tmp_path):
-    fontana("render", run_folder, "-o", "p/drop.####.png", *SMALL)
+def test_pictures_are_numbered_and_have_the_size(fontana, drop_cache, tmp_path):
+    fontana("render", drop_cache, "-o", "p/drop.####.png", *SMALL)
     names = sorted(path.name for path in (tmp_path / "p").iterdir())
     assert names == [f"drop.{frame:04d}.png" for frame in range(1, FRAME_COUNT + 1)]
     images = [np.asarray(Image.open(tmp_path / "p" / name)).astype(int) for name in names]
@@ -59,22 +46,23 @@ def test_pictures_are_numbered_and_have_the_size(fontana, run_folder, tmp_path):
     assert np.abs(images[0] - images[-1]).max() > 40  # something falls
 
 
-def test_the_same_command_again_draws_what_is_missing_and_nothing_else(fontana, run_folder, tmp_path):
-    command = ("render", run_folder, "-o", "p/x.##.png", *SMALL, "--json")
+def test_the_same_command_again_draws_what_is_missing_and_nothing_else(fontana, drop_cache, tmp_path):
+    command = ("render", drop_cache, "-o", "p/x.##.png", *SMALL, "--json")
     fontana(*command, "--frames", "1-4")
     before = pictures(tmp_path / "p")
     (tmp_path / "p" / "x.02.png").unlink()
     times = {name: (tmp_path / "p" / name).stat().st_mtime_ns for name in ("x.01.png", "x.04.png")}
-    last = json.loads(fontana(*command).stdout.splitlines()[-1])
-    assert (last["drawn"], last["found"]) == (3, 3)
+    again = fontana(*command)
+    assert drawn_of(again) == (3, 6)
+    assert json.loads(again.stdout.splitlines()[-1])["files"] == [f"p/x.{frame:02d}.png" for frame in range(1, 7)]
     assert {name: (tmp_path / "p" / name).stat().st_mtime_ns for name in times} == times
     assert pictures(tmp_path / "p")["x.02.png"] == before["x.02.png"]
 
 
-def test_a_picture_of_other_settings_is_drawn_again_and_a_foreign_one_refused(fontana, run_folder, tmp_path):
-    command = ("render", run_folder, "-o", "x.png", "--frames", 3, *SMALL, "--json")
-    assert json.loads(fontana(*command).stdout.splitlines()[-1])["drawn"] == 1
-    assert json.loads(fontana(*command, "--style", "points").stdout.splitlines()[-1])["drawn"] == 1
+def test_a_picture_of_other_settings_is_drawn_again_and_a_foreign_one_refused(fontana, drop_cache, tmp_path):
+    command = ("render", drop_cache, "-o", "x.png", "--frames", 3, *SMALL, "--json")
+    assert drawn_of(fontana(*command)) == (1, 1)
+    assert drawn_of(fontana(*command, "--style", "points")) == (1, 1)
     Image.new("RGB", (4, 4)).save(tmp_path / "x.png")  # as another program would
     assert "was not made by fontana render" in fontana(*command, code=2).stdout
     assert Image.open(tmp_path / "x.png").size == (4, 4)
@@ -83,8 +71,8 @@ def test_a_picture_of_other_settings_is_drawn_again_and_a_foreign_one_refused(fo
 
 
 @pytest.mark.parametrize("name", ["drop.mp4", "drop.gif", "drop.webp"])
-def test_a_film_has_every_frame_and_the_rate_of_the_run(fontana, run_folder, tmp_path, name):
-    fontana("render", run_folder, "-o", name, "--style", "points", *SMALL)
+def test_a_film_has_every_frame_and_the_rate_of_the_run(fontana, drop_cache, tmp_path, name):
+    fontana("render", drop_cache, "-o", name, "--style", "points", *SMALL)
     assert sorted(path.name for path in tmp_path.glob("*drop.*")) == [name]
     if name.endswith(".mp4"):
         reader = imageio_ffmpeg.read_frames(str(tmp_path / name))
@@ -98,35 +86,39 @@ def test_a_film_has_every_frame_and_the_rate_of_the_run(fontana, run_folder, tmp
         assert film.n_frames == FRAME_COUNT
 
 
-def test_missing_and_damaged_frames_are_skipped_and_named(fontana, run_folder, tmp_path):
-    (run_folder / "drop.0002.bgeo").unlink()
-    damaged = run_folder / "drop.0004.bgeo"
+def test_missing_and_damaged_frames_are_skipped_and_named(fontana, drop_cache, tmp_path):
+    (drop_cache / "drop.0002.bgeo").unlink()
+    damaged = drop_cache / "drop.0004.bgeo"
     data = bytearray(damaged.read_bytes())
     data[-5] ^= 0xFF
     damaged.write_bytes(bytes(data))
-    done = fontana("render", run_folder, "-o", "p/x.#.png", *SMALL)
+    done = fontana("render", drop_cache, "-o", "p/x.#.png", *SMALL, code=6)
+    assert "frame 2 is skipped: " in done.stdout
     assert "drop.0002.bgeo" in done.stdout
     assert "drop.0004.bgeo" in done.stdout
-    assert "skipped  2, 4" in done.stdout
+    assert "all is done but frames 2, 4: " in error_line(done)
     assert sorted(pictures(tmp_path / "p")) == ["x.1.png", "x.3.png", "x.5.png", "x.6.png"]
 
 
-def test_a_run_without_a_sound_frame_says_so(fontana, run_folder, tmp_path):
-    for path in run_folder.glob("*.bgeo"):
+def test_a_run_without_a_sound_frame_says_so(fontana, drop_cache, tmp_path):
+    for path in drop_cache.glob("*.bgeo"):
         path.write_bytes(b"")
-    done = fontana("render", run_folder, "-o", "x.gif", *SMALL, "--quiet", code=6)
-    assert error_line(done).startswith("fontana: none of the frames can be drawn: ")
+    done = fontana("render", drop_cache, "-o", "x.gif", *SMALL, "--quiet", code=6)
+    assert error_line(done).startswith("fontana: none of the frames can be read: ")
     assert not list(tmp_path.glob("*x.gif*"))
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("-o", "x.mp5"), 'x.mp5": expected a name that ends in .png, .mp4, .gif, .webp; did you mean .mp4?'),
-        (("-o", "x"), "expected a name that ends in .png, .mp4, .gif, .webp"),
+        (
+            ("-o", "x.mp5"),
+            'x.mp5": expected a name that ends in .png, .mp4, .gif or .webp, not in .mp5; did you mean .mp4?',
+        ),
+        (("-o", "x"), "expected a name that ends in .png, .mp4, .gif or .webp, it has no suffix"),
         (("-o", "x.png"), '6 frames need a number in the name, as "x.####.png"'),
-        (("-o", "x.gif", "--frames", "2-9"), '"2-9" is not within the frames of the run, 1 to 6'),
-        (("-o", "x.gif", "--frames", "a"), "as 24, 1-48 or 1-48/2"),
+        (("-o", "x.gif", "--frames", "2-9"), "there is no frame 9; the run has 1 to 6"),
+        (("-o", "x.gif", "--frames", "a"), "expected numbers such as 1-48, 1-48/2"),
         (("-o", "x.gif", "--size", "big"), "expected WIDTHxHEIGHT"),
         (("-o", "x.mp4", "--size", "95x64"), "needs an even width and height, got 95x64"),
         (("-o", "x.gif", "--camera", "eyes=1,2,3"), 'there is no "eyes"; did you mean eye?'),
@@ -136,8 +128,14 @@ def test_a_run_without_a_sound_frame_says_so(fontana, run_folder, tmp_path):
         (("-o", "x.gif", "--color-range", "3,1"), "expected the lower value first"),
     ],
 )
-def test_what_cannot_be_is_refused_in_a_sentence(fontana, run_folder, arguments, words):
-    assert words in error_line(fontana("render", run_folder, *arguments, code=2))
+def test_what_cannot_be_is_refused_in_a_sentence(fontana, drop_cache, arguments, words):
+    assert words in error_line(fontana("render", drop_cache, *arguments, code=2))
+
+
+def test_a_name_that_is_too_long_is_a_sentence(fontana, drop_cache):
+    line = error_line(fontana("render", drop_cache, "-o", f"{'x' * 300}.png", "--frames", 1, *SMALL, "--quiet", code=6))
+    assert line.startswith("fontana: cannot create a file in the folder of 'xxx")
+    assert line.endswith("File name too long")
 
 
 def test_a_folder_without_a_run_is_refused(fontana, tmp_path):
@@ -145,16 +143,16 @@ def test_a_folder_without_a_run_is_refused(fontana, tmp_path):
     assert "it is not the folder of a run" in error_line(fontana("render", "empty", "-o", "x.gif", code=2))
 
 
-def test_without_opengl_there_is_a_sentence(fontana, run_folder):
+def test_without_opengl_there_is_a_sentence(fontana, drop_cache):
     missing = {"GLCONTEXT_LINUX_LIBEGL": "libnone.so", "GLCONTEXT_LINUX_LIBGL": "libnone.so"}
-    line = error_line(fontana("render", run_folder, "-o", "x.gif", *SMALL, code=5, env=missing))
+    line = error_line(fontana("render", drop_cache, "-o", "x.gif", *SMALL, code=5, env=missing))
     assert "no OpenGL 3.3 without a window here" in line
     assert "apt install libegl1" in line
 
 
-def test_without_a_display_it_works(fontana, run_folder):
+def test_without_a_display_it_works(fontana, drop_cache):
     hidden = {"DISPLAY": "", "WAYLAND_DISPLAY": ""}
-    fontana("render", run_folder, "-o", "x.png", "--frames", 1, *SMALL, env=hidden)
+    fontana("render", drop_cache, "-o", "x.png", "--frames", 1, *SMALL, env=hidden)
 
 
 def test_without_moderngl_there_is_a_sentence(monkeypatch):
@@ -164,13 +162,13 @@ def test_without_moderngl_there_is_a_sentence(monkeypatch):
 
 
 @pytest.mark.parametrize(("name", "film"), [("x.mp4", True), ("p/x.####.png", False)])
-def test_ctrl_c_keeps_what_is_drawn(run_folder, tmp_path, name, film):
+def test_ctrl_c_keeps_what_is_drawn(drop_cache, tmp_path, name, film):
     """The signal goes to the whole group, as a terminal sends it."""
-    call = fontana_command("render", run_folder, "-o", name, "--size", "240x160", "--samples", 6, "--json")
+    call = fontana_command("render", drop_cache, "-o", name, "--size", "240x160", "--samples", 6, "--json")
     process = subprocess.Popen(
         call, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
     )
-    assert json.loads(process.stdout.readline())["event"] == "frame"
+    assert [json.loads(process.stdout.readline())["event"] for _ in range(2)] == ["start", "frame"]
     os.killpg(process.pid, signal.SIGINT)
     rest, errors = process.communicate(timeout=60)
     assert process.returncode == 130, errors
@@ -187,27 +185,27 @@ def test_ctrl_c_keeps_what_is_drawn(run_folder, tmp_path, name, film):
 
 
 @pytest.mark.parametrize("name", ["x.mp4", "x.#.png"])
-def test_a_full_disk_is_a_sentence_and_leaves_no_half_file(fontana, run_folder, tmp_path, name):
+def test_a_full_disk_is_a_sentence_and_leaves_no_half_file(fontana, drop_cache, tmp_path, name):
     def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
 
-    done = fontana("render", run_folder, "-o", name, *SMALL, "--quiet", code=6, preexec_fn=limit)
+    done = fontana("render", drop_cache, "-o", name, *SMALL, "--quiet", code=6, preexec_fn=limit)
     assert error_line(done).startswith("fontana: cannot write ")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["drop"]
 
 
-def test_a_film_that_was_there_stays_until_the_next_is_complete(fontana, run_folder, tmp_path):
+def test_a_film_that_was_there_stays_until_the_next_is_complete(fontana, drop_cache, tmp_path):
     (tmp_path / "x.gif").write_bytes(b"former")
-    for path in run_folder.glob("*.bgeo"):
+    for path in drop_cache.glob("*.bgeo"):
         path.unlink()
-    fontana("render", run_folder, "-o", "x.gif", *SMALL, code=6)
+    fontana("render", drop_cache, "-o", "x.gif", *SMALL, code=6)
     assert (tmp_path / "x.gif").read_bytes() == b"former"
 
 
-def test_the_camera_turns_over_the_frames(fontana, run_folder, tmp_path):
+def test_the_camera_turns_over_the_frames(fontana, drop_cache, tmp_path):
     still, turning = ("--camera", "azimuth=0 distance=2"), ("--camera", "azimuth=0 distance=2 turn=90")
-    fontana("render", run_folder, "-o", "a.#.png", *SMALL, *still)
-    fontana("render", run_folder, "-o", "b.#.png", *SMALL, *turning)
+    fontana("render", drop_cache, "-o", "a.#.png", *SMALL, *still)
+    fontana("render", drop_cache, "-o", "b.#.png", *SMALL, *turning)
     difference = [
         np.abs(np.asarray(Image.open(f"{tmp_path}/a.{k}.png")).astype(int) - Image.open(f"{tmp_path}/b.{k}.png")).max()
         for k in (1, FRAME_COUNT)
@@ -216,10 +214,7 @@ def test_the_camera_turns_over_the_frames(fontana, run_folder, tmp_path):
     assert difference[1] > 40
 
 
-def test_numbers_out_of_text():
-    assert parse_frames("2-9/3", 10) == [2, 5, 8]
-    assert parse_frames("7", 10) == [7]
-    assert parse_frames(None, 3) == [1, 2, 3]
+def test_a_size_out_of_text():
     assert parse_size("640x360") == (640, 360)
 
 

@@ -9,7 +9,7 @@ import sys
 import time
 
 import pytest
-from scenes_to_view import DROP
+from small_scenes import DROP
 from virtual_screen import virtual_screen
 
 PATIENCE = 60  # s

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scenes_to_view import DROP
+from small_scenes import DROP
 
 from fontana.gl.camera import Camera
 from fontana.scene import load_scene

@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 import pytest
-from scenes_to_view import DROP
+from small_scenes import DROP
 
 from fontana import _core
 from fontana.scene import load_scene
@@ -282,7 +282,7 @@ def test_frames_that_cannot_be_read_are_skipped_and_named(drop_cache, play, harm
     player.seek(3)
     shown(player, 4)
     assert list(player.skipped) == [3]
-    assert "frame 3 skipped" in player.skipped[3]
+    assert "frame 3 is skipped" in player.skipped[3]
     assert "drop.0003.bgeo" in player.skipped[3]
 
 

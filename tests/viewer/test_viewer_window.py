@@ -7,7 +7,7 @@ import time
 
 import numpy as np
 import pytest
-from scenes_to_view import DROP
+from small_scenes import DROP
 from virtual_screen import virtual_screen
 
 from fontana.scene import load_scene
@@ -339,7 +339,7 @@ def test_a_cache_is_played_and_its_lost_frame_is_named(sit_down, drop_cache):
     (drop_cache / "drop.0002.bgeo").unlink()
     desk = sit_down(CachePlayer(drop_cache))
     desk.model.set_speed(0.125)
-    desk.wait(lambda: any("frame 2 skipped" in text for text in desk.model.messages.history))
+    desk.wait(lambda: any("frame 2 is skipped" in text for text in desk.model.messages.history))
     seen = set()
 
     def all_seen():

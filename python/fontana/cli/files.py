@@ -8,20 +8,21 @@ from pathlib import Path
 
 import click
 
-from fontana.cache import Cache
 from fontana.export import alembic, usd, vdb
-from fontana.export.progress import make_progress
 from fontana.export.sequence import SequenceOptions, make_sequence
 from fontana.export.surfaces import SUFFIXES as MESH_SUFFIXES
 from fontana.export.surfaces import SurfaceMaker
 from fontana.export.target import Target, parse_target
 from fontana.export.whole import FrameWriter, write_whole
+from fontana.runs.cache import Cache
+from fontana.runs.frame_numbers import FRAMES_HELP
+from fontana.runs.progress import make_progress
 from fontana.surface import SurfaceSettings, check_installed
 
 _MOST_JOBS = 8  # by default: each needs memory for a frame of its own
 
 _folder = click.argument("folder", type=click.Path(path_type=Path))
-_frames = click.option("--frames", metavar="RANGE", help="Such as 1-48 or 1,5,10-20. [default: all]")
+_frames = click.option("--frames", metavar="RANGE", help=FRAMES_HELP)
 _restart = click.option("--restart", is_flag=True, help="Replace what is there instead of continuing.")
 _jobs = click.option(
     "--jobs",
@@ -71,7 +72,7 @@ def _surface_options(function):
 @_folder
 @_frames
 @click.option(
-    "-o", "--output", metavar="NAME", help="Ends in .bgeo, .ply, .obj or .usdc. [default: FOLDER/surface/NAME.bgeo]"
+    "-o", "--out", metavar="NAME", help="Ends in .bgeo, .ply, .obj or .usdc. [default: FOLDER/surface/NAME.bgeo]"
 )
 @_surface_options
 @_jobs
@@ -81,7 +82,7 @@ def _surface_options(function):
 def mesh(
     folder: Path,
     frames: str | None,
-    output: str | None,
+    out: str | None,
     cell_size: float,
     smoothing: int,
     threshold: float,
@@ -103,7 +104,7 @@ def mesh(
     """
     cache = Cache(folder)
     chosen = cache.select(frames)
-    target = parse_target(output or str(folder / "surface" / f"{cache.name}.bgeo"), MESH_SUFFIXES)
+    target = parse_target(out or str(folder / "surface" / f"{cache.scene.name}.bgeo"), MESH_SUFFIXES)
     check_installed()
     if target.suffix in usd.SUFFIXES:
         usd.check_installed()
@@ -113,13 +114,12 @@ def mesh(
     progress = make_progress(as_json, quiet)
     try:
         result = make_sequence(cache, chosen, make, options, progress)
-        files = _span(target, chosen)
         if target.suffix in usd.SUFFIXES and result.there:
             stage = target.folder / f"{target.name}.usda"
             usd.write_clips_stage(stage, target.pattern.name, result.there, _layout(cache, result.there))
-            files = f"{stage}, which plays {files}"
+            progress.note(f"{stage} plays what is there")
         result.raise_if_incomplete()
-        progress.finish(files)
+        progress.finish([target.frame(frame) for frame in chosen])
     finally:
         progress.close()
 
@@ -127,7 +127,7 @@ def mesh(
 @click.command()
 @_folder
 @_frames
-@click.option("-o", "--output", metavar="NAME", required=True, help="Ends in .usdc, .usda, .usd, .abc or .vdb.")
+@click.option("-o", "--out", metavar="NAME", required=True, help="Ends in .usdc, .usda, .usd, .abc or .vdb.")
 @click.option(
     "--voxel-size",
     type=click.FloatRange(0.25, 8.0),
@@ -143,7 +143,7 @@ def mesh(
 def export(
     folder: Path,
     frames: str | None,
-    output: str,
+    out: str,
     voxel_size: float,
     jobs: int,
     restart: bool,
@@ -165,7 +165,7 @@ def export(
     """
     cache = Cache(folder)
     chosen = cache.select(frames)
-    target = parse_target(output, [*usd.SUFFIXES, ".abc", ".vdb"])
+    target = parse_target(out, [*usd.SUFFIXES, ".abc", ".vdb"])
     progress = make_progress(as_json, quiet)
     try:
         if target.suffix == ".vdb":
@@ -175,10 +175,10 @@ def export(
             make_sequence(
                 cache, chosen, make, SequenceOptions(target, make.recorded(), jobs, restart), progress
             ).raise_if_incomplete()
-            progress.finish(_span(target, chosen))
+            progress.finish([target.frame(frame) for frame in chosen])
         else:
             write_whole(cache, chosen, _points_writer(cache, chosen, target), target, progress)
-            progress.finish(str(target.whole))
+            progress.finish([target.whole])
     finally:
         progress.close()
 
@@ -189,9 +189,4 @@ def _points_writer(cache: Cache, frames: list[int], target: Target) -> AbstractC
 
 
 def _layout(cache: Cache, frames: list[int]) -> usd.StageLayout:
-    return usd.StageLayout(cache.name, cache.frame_rate, cache.unit, frames[0], frames[-1])
-
-
-def _span(target: Target, frames: list[int]) -> str:
-    last = f" to {frames[-1]:04d}" if len(frames) > 1 else ""
-    return f"{target.frame(frames[0])}{last}"
+    return usd.StageLayout(cache.scene.name, cache.frame_rate, cache.unit, frames[0], frames[-1])

@@ -7,12 +7,14 @@ from pathlib import Path
 import click
 
 from fontana.gl.camera import Camera
+from fontana.gl.footage import Footage
 from fontana.gl.frame_data import COLOR_MAPS, COLOR_UNITS, STYLES, Look
 from fontana.render.job import render as render_frames
-from fontana.render.options import RenderOptions, parse_camera, parse_color_range, parse_frames, parse_size
+from fontana.render.options import RenderOptions, parse_camera, parse_color_range, parse_size
 from fontana.render.outputs import open_output
-from fontana.render.progress import make_reporter
 from fontana.runs.cache import Cache
+from fontana.runs.frame_numbers import FRAMES_HELP
+from fontana.runs.progress import make_progress
 
 _LOOK = Look()
 
@@ -23,7 +25,7 @@ _LOOK = Look()
     "-o", "--out", "out", type=click.Path(path_type=Path), required=True, help="x.mp4, .gif, .webp, x.####.png"
 )
 @click.option("--style", type=click.Choice(STYLES), default=_LOOK.style, show_default=True, help="How it is drawn.")
-@click.option("--frames", "frame_text", metavar="A-B[/N]", help="Which frames. [default: all]")
+@click.option("--frames", "frame_text", metavar="RANGE", help=FRAMES_HELP)
 @click.option("--size", "size_text", default="1280x720", show_default=True, metavar="WxH", help="In pixels.")
 @click.option(
     "--samples",
@@ -83,22 +85,22 @@ def render(
       fontana render out/fountain -o still.png --frames 40 --camera "azimuth=30 elevation=12 distance=3"
     """
     cache = Cache(folder)
-    camera, turn = parse_camera(camera_text, Camera.of_scene(cache.scene.view, cache.bounds()))
+    footage = Footage(cache)
+    camera, turn = parse_camera(camera_text, Camera.of_scene(cache.scene.view, footage.bounds()))
     exposure = shutter * cache.frame_duration if style == "fluid" else 0.0
     options = RenderOptions(
-        frames=parse_frames(frame_text, cache.frame_count),
+        frames=cache.select(frame_text),
         size=parse_size(size_text),
         camera=camera,
         turn=turn,
         look=Look(style, color_by, parse_color_range(range_text), color_map, samples, exposure),
         legend=legend,
-        fps=fps or cache.fps,
+        fps=fps or cache.frame_rate,
         restart=restart,
     )
     output = open_output(out, options.size, options.fps, len(options.frames), restart)
-    reporter = make_reporter(as_json, quiet, len(options.frames))
+    progress = make_progress(as_json, quiet)
     try:
-        report = render_frames(cache, options, output, reporter.frame)
-        reporter.finish(report)
+        progress.finish(render_frames(footage, options, output, progress))
     finally:
-        reporter.close()
+        progress.close()

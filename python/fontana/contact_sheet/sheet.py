@@ -10,10 +10,12 @@ import numpy as np
 from fontana import _core
 from fontana.bounds import stage_bounds
 from fontana.contact_sheet.spheres import SPEED_COLOURS, SPEED_STOPS, Stage, View
-from fontana.formats import read_frame
 from fontana.gl.camera import Camera
+from fontana.gl.footage import Footage
+from fontana.gl.frame_data import FrameData
+from fontana.runs.cache import Cache
 from fontana.runs.manifest import Manifest
-from fontana.scene import Scene, resolve
+from fontana.scene import Scene
 
 COLUMNS = 4
 FRAME_COUNT = 8
@@ -28,15 +30,12 @@ def contact_sheet(folder: Path) -> Path:
 
     Raises BadInput if the folder is not that of a run, IoError if files cannot be read or written.
     """
-    manifest = Manifest.load(folder)
-    if manifest is None or not manifest.frames:
-        raise _core.BadInput(f'"{folder}" has no finished frames to draw')
-    scene = resolve(manifest.data["scene"], manifest.data["scene"]["name"])
-    records = _choose(manifest.frames, scene.view.get("frames"))
-    frames = [read_frame(folder / record["files"][0]["file"]) for record in records]
-    images, fast = _draw_frames(scene, records, frames)
-    path = folder / f"{scene.name}.png"
-    _core.publish_file(str(path), _sheet(scene, manifest, records, images, fast))
+    cache = Cache(folder)
+    records = _choose(cache.manifest.frames, cache.scene.view.get("frames"))
+    footage = Footage(cache)
+    images, fast = _draw_frames(footage, [footage.load(record["frame"]) for record in records])
+    path = folder / f"{cache.scene.name}.png"
+    _core.publish_file(str(path), _sheet(cache.scene, cache.manifest, records, images, fast))
     return path
 
 
@@ -48,25 +47,20 @@ def _choose(frames: list[dict], wanted: list[int] | None) -> list[dict]:
     return [frames[round(len(frames) * (k + 1) / count) - 1] for k in range(count)]
 
 
-def _draw_frames(scene: Scene, records: list[dict], frames: list[dict]) -> tuple[list[np.ndarray], float]:
-    simulation = scene.build()
-    speeds = [np.linalg.norm(frame["velocity"], axis=1) for frame in frames]
+def _draw_frames(footage: Footage, frames: list[FrameData]) -> tuple[list[np.ndarray], float]:
+    """The pictures of the frames, and the speed (m/s) at the end of their colours."""
+    scene = footage.cache.scene
+    speeds = [frame.values("speed") for frame in frames]
     everything = np.concatenate(speeds)
     fast = float(np.quantile(everything, 0.996)) if len(everything) else 1.0
-    bounds = stage_bounds(scene.colliders, [frame["position"] for frame in frames])
+    bounds = stage_bounds(scene.colliders, [frame.position for frame in frames])
     view = _view(scene, bounds)
-    radii = np.concatenate([frame["radius"] for frame in frames])
-    radius = SPHERE_SCALE * float(radii[0]) if len(radii) else 0.0
-    stage = Stage(view, scene.colliders, _centres(simulation, 0.0), bounds)
+    stage = Stage(view, scene.colliders, footage.centres(0.0), bounds)
     images = [
-        _shrink(stage.draw(_centres(simulation, record["time"]), frame["position"], speed, radius, fast))
-        for record, frame, speed in zip(records, frames, speeds, strict=True)
+        _shrink(stage.draw(frame.centres, frame.position, speed, SPHERE_SCALE * frame.radius, fast))
+        for frame, speed in zip(frames, speeds, strict=True)
     ]
     return images, fast
-
-
-def _centres(simulation: _core.Simulation, time: float) -> list[np.ndarray]:
-    return [np.array(simulation.collider_centre(index, time)) for index in range(simulation.collider_count)]
 
 
 def _shrink(image: np.ndarray) -> np.ndarray:

@@ -20,16 +20,16 @@ from pathlib import Path
 import numpy as np
 
 from fontana import _core
-from fontana.cache import Cache, frame_list, read_checked
-from fontana.export.progress import Quiet
 from fontana.export.record import Record
 from fontana.export.target import Target
+from fontana.runs.cache import Cache, read_checked
+from fontana.runs.frame_numbers import refuse_skipped
 from fontana.runs.lock import FolderLock
+from fontana.runs.progress import Quiet
 from fontana.runs.runner import StoppedError
 from fontana.runs.stop import StopSignals
 
 _SIGNAL_DELAY = 0.2  # s until a signal that reached another process has reached this one too
-STOP_MESSAGE = "stopping after the frames in work; once more stops at once"
 
 # Makes and publishes a frame's file at a path; returns what there is to say about it: {"text": ..., ...}. Travels to
 # another process, so it is an instance of a dataclass rather than a closure.
@@ -56,8 +56,10 @@ class SequenceOptions:
 
 @dataclass(frozen=True)
 class SequenceResult:
-    """What came of it: the frames that are there, those skipped with the reason, and how a stop reads, if it came."""
+    """What came of the frames `asked` for: all of the run that are there, those skipped
+    with the reason, and how a stop reads, if it came."""
 
+    asked: int
     there: list[int]
     skipped: dict[int, str]
     stopped: StoppedError | None
@@ -66,7 +68,7 @@ class SequenceResult:
         """Raises StoppedError after Ctrl-C or SIGTERM, and IoError that names the skipped frames."""
         if self.stopped:
             raise self.stopped
-        refuse_skipped(self.skipped)
+        refuse_skipped(self.skipped, self.asked)
 
 
 def make_sequence(
@@ -79,7 +81,7 @@ def make_sequence(
     """
     target = options.target
     _create(target.folder)
-    with FolderLock(target.folder) as lock, StopSignals(STOP_MESSAGE) as stop:
+    with FolderLock(target.folder) as lock, StopSignals("stopping after the frames in work") as stop:
         for note in lock.notes:
             progress.note(note)
         record = Record(target, options.settings, options.restart)
@@ -93,7 +95,7 @@ def make_sequence(
         for entry in _run(tasks, make, options.jobs, stop):
             if "skipped" in entry:
                 skipped[entry["frame"]] = entry["skipped"]
-                progress.note(f"frame {entry['frame']} is skipped: {entry['skipped']}")
+                progress.skip(entry["frame"], entry["skipped"])
             else:
                 progress.frame(entry)
                 record.add({name: value for name, value in entry.items() if name != "text"})
@@ -103,14 +105,7 @@ def make_sequence(
         if stop.requested and done + len(skipped) < len(frames):
             message = f"stopped with {done} of {len(frames)} frames; the same command continues"
             stopped = StoppedError(stop.requested, message)
-        return SequenceResult(there, skipped, stopped)
-
-
-def refuse_skipped(skipped: dict[int, str]) -> None:
-    """Raises IoError that names the skipped frames, if there are any, with the reason of the first."""
-    if skipped:
-        numbers = f"frame{'s' * (len(skipped) > 1)} {frame_list(list(skipped))}"
-        raise _core.IoError(f"all is done but {numbers}: {skipped[min(skipped)]}")
+        return SequenceResult(len(frames), there, skipped, stopped)
 
 
 def _create(folder: Path) -> None:

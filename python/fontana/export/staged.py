@@ -49,6 +49,7 @@ def _reason(error: Exception, folder: Path) -> str:
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     with contextlib.suppress(OSError):
-        if os.statvfs(folder).f_bavail == 0:
+        disk = os.statvfs(folder)
+        if disk.f_blocks > 0 and disk.f_bavail == 0:  # /proc and its like have no blocks at all
             return "the disk is full"
     return " ".join(str(error).split())[:200]

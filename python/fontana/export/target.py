@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fontana import _core
-from fontana.tables import suggestion
+from fontana.file_suffix import check_suffix
 
 _NUMBER = re.compile(r"\.?#+$")
 
@@ -42,14 +42,9 @@ class Target:
 
 def parse_target(text: str, suffixes: Iterable[str]) -> Target:
     """The target that -o names. Raises BadInput, with the nearest suffix, if it ends in none of `suffixes`."""
-    path, known = Path(text), list(suffixes)
-    if path.suffix.lower() not in known:
-        listed = f"{', '.join(known[:-1])} or {known[-1]}"
-        wrong = f"not in {path.suffix}" if path.suffix else "it has no suffix"
-        near = suggestion(path.suffix.lower(), known) if path.suffix else ""
-        hint = near if near.startswith("; did you mean") else ""
-        raise _core.BadInput(f'-o "{text}": expected a name that ends in {listed}, {wrong}{hint}')
+    path = Path(text)
+    suffix = check_suffix(path, suffixes)
     name = _NUMBER.sub("", path.stem)
     if not name:
         raise _core.BadInput(f'-o "{text}": expected a name before the number, such as water.####{path.suffix}')
-    return Target(path.parent, name, path.suffix.lower())
+    return Target(path.parent, name, suffix)

@@ -62,7 +62,7 @@ def find_openvdb() -> ModuleType:
     bundled = _bundled_with_blender()
     if bundled is None:
         raise _core.BadInput(
-            "VDB needs the Python module openvdb, which is not here: pip install bpy brings the one of Blender"
+            "VDB needs the Python module openvdb, which is not here; pip install 'fontana[vdb]' brings that of Blender"
         )
     specification = importlib.util.spec_from_file_location("openvdb", bundled)
     module = importlib.util.module_from_spec(specification)

@@ -8,14 +8,12 @@ from typing import Protocol
 import numpy as np
 
 from fontana import _core
-from fontana.cache import Cache
-from fontana.export.progress import Quiet
-from fontana.export.sequence import refuse_skipped
 from fontana.export.target import Target
+from fontana.runs.cache import Cache
+from fontana.runs.frame_numbers import refuse_skipped
+from fontana.runs.progress import Quiet
 from fontana.runs.runner import StoppedError
 from fontana.runs.stop import StopSignals
-
-_STOP_MESSAGE = "stopping after this frame; once more stops at once"
 
 
 class FrameWriter(Protocol):
@@ -35,7 +33,7 @@ def write_whole(
     skipped: dict[int, str] = {}
     added = 0
     progress.start(str(target.whole), len(frames), 0)
-    with StopSignals(_STOP_MESSAGE) as stop:
+    with StopSignals("stopping after this frame") as stop:
         with writer as file:
             for frame in frames:
                 if stop.requested:
@@ -44,7 +42,7 @@ def write_whole(
                     arrays = cache.read(frame)
                 except _core.IoError as error:
                     skipped[frame] = str(error)
-                    progress.note(f"frame {frame} is skipped: {error}")
+                    progress.skip(frame, str(error))
                     continue
                 file.add(frame, arrays)
                 added += 1
@@ -54,4 +52,4 @@ def write_whole(
                 stop.requested,
                 f'"{target.whole}" has {added} of {len(frames)} frames; the same command makes it anew',
             )
-    refuse_skipped(skipped)
+    refuse_skipped(skipped, len(frames))

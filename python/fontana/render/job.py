@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,81 +12,78 @@ import numpy as np
 from fontana import _core
 from fontana.gl.camera import Camera
 from fontana.gl.context import create_headless_context
+from fontana.gl.footage import Footage
 from fontana.gl.frame_data import FrameData, Look
 from fontana.gl.renderer import Renderer
 from fontana.render.legend import add_legend
 from fontana.render.options import RenderOptions
 from fontana.render.outputs import Output
-from fontana.runs.cache import Cache
+from fontana.runs.frame_numbers import refuse_skipped
+from fontana.runs.progress import Quiet
 from fontana.runs.runner import StoppedError
 from fontana.runs.stop import StopSignals
 
-_STOP_MESSAGE = "stopping after this picture; once more stops at once"
 
+def render(footage: Footage, options: RenderOptions, output: Output, progress: Quiet) -> list[Path]:
+    """Draws the frames whose pictures are not in the output yet, and returns the files of all that are there.
 
-@dataclass
-class Report:
-    """What became of the frames asked for: numbers of those drawn, found done, and skipped with the reason."""
-
-    drawn: list[int] = field(default_factory=list)
-    found: list[int] = field(default_factory=list)
-    skipped: dict[int, str] = field(default_factory=dict)
-    files: list[Path] = field(default_factory=list)
-
-
-def render(cache: Cache, options: RenderOptions, output: Output, on_frame: Callable[[int, str], None]) -> Report:
-    """Draws the frames into the output; `on_frame(frame, reason)` follows each, `reason` is "" unless it is skipped.
-
-    A frame whose file is missing or damaged is skipped. Raises StoppedError on Ctrl-C and SIGTERM with what is drawn
-    complete; IoError if nothing could be read or a picture cannot be written; DeviceUnavailable without OpenGL.
+    A frame whose file is missing or damaged is skipped: once all others are done, IoError names it. Raises StoppedError
+    on Ctrl-C and SIGTERM with what is drawn complete; IoError if a picture cannot be written; DeviceUnavailable without
+    OpenGL.
     """
-    job = _Job(cache, options, output)
+    job = _Job(footage, options, output, progress)
     try:
-        with StopSignals(_STOP_MESSAGE) as stop:
-            for frame in options.frames:
+        due = [frame for frame in options.frames if not output.has(frame, job.stamp(frame))]
+        progress.start(str(output.path), len(options.frames), len(options.frames) - len(due))
+        with StopSignals("stopping after this picture") as stop:
+            for frame in due:
                 if stop.requested:
                     break
-                on_frame(frame, job.do(frame))
-            job.report.files = output.finish()
+                job.do(frame)
+            files = output.finish()
     finally:
         output.abandon()
-    done = len(job.report.drawn) + len(job.report.found)
-    if stop.requested and done + len(job.report.skipped) < len(options.frames):
-        files = f"; {job.report.files[-1]} is complete so far" if job.report.files else ""
-        raise StoppedError(stop.requested, f"stopped after {done} of {len(options.frames)} pictures{files}")
-    if not done:
-        raise _core.IoError(f"none of the frames can be drawn: {next(iter(job.report.skipped.values()))}")
-    return job.report
+    untouched = len(due) - job.drawn - len(job.skipped)
+    if stop.requested and untouched:
+        done = len(options.frames) - untouched - len(job.skipped)
+        so_far = f"; {files[-1]} is complete so far" if files else ""
+        raise StoppedError(stop.requested, f"stopped after {done} of {len(options.frames)} pictures{so_far}")
+    refuse_skipped(job.skipped, len(options.frames))
+    return files
 
 
 class _Job:
-    def __init__(self, cache: Cache, options: RenderOptions, output: Output):
-        self.cache, self.options, self.output = cache, options, output
-        self.report = Report()
-        self.bounds = cache.bounds()
+    """Draws frames one by one.
+
+    drawn    how many
+    skipped  those that cannot be read, each with the reason
+    """
+
+    def __init__(self, footage: Footage, options: RenderOptions, output: Output, progress: Quiet):
+        self.footage, self.options, self.output, self.progress = footage, options, output, progress
+        self.drawn = 0
+        self.skipped: dict[int, str] = {}
+        self.bounds = footage.bounds()
         self._renderer: Renderer | None = None
         self._color_range = options.look.color_range
 
-    def do(self, frame: int) -> str:
-        """Draws a frame unless its picture is there; returns why it was skipped, or ""."""
-        stamp = self._stamp(frame)
-        if self.output.has(frame, stamp):
-            self.report.found.append(frame)
-            return ""
+    def do(self, frame: int) -> None:
+        """Draws a frame, or skips it."""
         try:
-            data = self.cache.load(frame)
+            data = self.footage.load(frame)
         except _core.IoError as error:
-            self.report.skipped[frame] = str(error)
-            return str(error)
-        self.output.write(frame, self._draw(frame, data), stamp)
-        self.report.drawn.append(frame)
-        return ""
+            self.skipped[frame] = str(error)
+            self.progress.skip(frame, str(error))
+            return
+        self.output.write(frame, self._draw(frame, data), self.stamp(frame))
+        self.drawn += 1
+        self.progress.frame({"frame": frame, "text": f"{data.particle_count:,} particles"})
 
-    def _stamp(self, frame: int) -> str:
+    def stamp(self, frame: int) -> str:
         """A fingerprint of everything the picture depends on."""
         parts = {
             "version": _core.version(),
-            "frame": self.cache.records[frame - 1]["files"][0]["hash"],
+            "frame": self.footage.cache.hash(frame),
             "look": asdict(self._look()),
             "legend": self.options.legend,
             "size": self.options.size,
@@ -106,7 +102,7 @@ class _Job:
     def _open_renderer(self) -> Renderer:
         if self._renderer is None:
             self._renderer = Renderer(create_headless_context())
-            self._renderer.set_stage(self.cache.scene.colliders, self.bounds)
+            self._renderer.set_stage(self.footage.cache.scene.colliders, self.bounds)
         return self._renderer
 
     def _camera(self, frame: int) -> Camera:
@@ -121,5 +117,5 @@ class _Job:
         """The look with a colour range that is the same in all pictures of the run, so that they can be compared."""
         look = self.options.look
         if look.style == "points" and self._color_range is None:
-            self._color_range = self.cache.value_range(look.color_by)
+            self._color_range = self.footage.value_range(look.color_by)
         return replace(look, color_range=self._color_range)

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from fontana import _core
 from fontana.gl.camera import Camera
 from fontana.gl.frame_data import Look
-from fontana.tables import nearest, suggestion
+from fontana.tables import suggestion
 
 LARGEST_SIDE = 8192  # pixels; what OpenGL 3.3 drivers commonly draw into
 _SIZE = re.compile(r"(\d{1,5})[xX](\d{1,5})")
-_RANGE = re.compile(r"(\d{1,8})(?:-(\d{1,8})(?:/(\d{1,8}))?)?")
 _NUMBERS = {"eye": 3, "target": 3, "fov": 1, "azimuth": 1, "elevation": 1, "distance": 1, "turn": 1}
 
 
@@ -40,19 +38,6 @@ def parse_size(text: str) -> tuple[int, int]:
     if not match or min(size) < 1 or max(size) > LARGEST_SIDE:
         raise _core.BadInput(f'--size: expected WIDTHxHEIGHT of 1 to {LARGEST_SIDE} pixels, as 1280x720, got "{text}"')
     return size
-
-
-def parse_frames(text: str | None, frame_count: int) -> list[int]:
-    """ "7", "1-48" or "1-48/2" (every second) as numbers; None: all. Raises BadInput."""
-    if text is None:
-        return list(range(1, frame_count + 1))
-    match = _RANGE.fullmatch(text)
-    if not match:
-        raise _core.BadInput(f'--frames: expected a number or a range, as 24, 1-48 or 1-48/2, got "{text}"')
-    first, last, step = int(match[1]), int(match[2] or match[1]), int(match[3] or 1)
-    if not 1 <= first <= last <= frame_count or step < 1:
-        raise _core.BadInput(f'--frames: "{text}" is not within the frames of the run, 1 to {frame_count}')
-    return list(range(first, last + 1, step))
 
 
 def parse_color_range(text: str | None) -> tuple[float, float] | None:
@@ -105,13 +90,3 @@ def _floats(where: str, text: str, count: int) -> list[float]:
         words = "a number" if count == 1 else f"{count} numbers with commas between"
         raise _core.BadInput(f'{where}: expected {words}, got "{text}"')
     return values
-
-
-def check_suffix(path: Path, known: tuple[str, ...]) -> None:
-    """Raises BadInput if the file's name does not end in one of `known`."""
-    suffix = path.suffix.lower()
-    if suffix in known:
-        return
-    near = nearest(suffix, known)
-    hint = f"; did you mean {near}?" if near else ""
-    raise _core.BadInput(f'-o "{path}": expected a name that ends in {", ".join(known)}{hint}')

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import re
 from pathlib import Path
 from typing import Protocol
@@ -10,15 +11,17 @@ from typing import Protocol
 import numpy as np
 
 from fontana import _core
+from fontana.file_suffix import check_suffix
 from fontana.render.film import FILM_SUFFIXES, Film
-from fontana.render.options import check_suffix
 
 _HASHES = re.compile(r"#+")
 _STAMP = "fontana"  # the text chunk of a PNG that says from what it was made
 
 
 class Output(Protocol):
-    """Takes pictures in order of their frames."""
+    """Takes pictures in order of their frames; `path` is the file, or the pattern of their names."""
+
+    path: Path
 
     def has(self, frame: int, stamp: str) -> bool:
         """Whether the picture of `frame` is there, made from what `stamp` says. Raises BadInput if it is not ours."""
@@ -35,13 +38,13 @@ class Output(Protocol):
 
 def open_output(path: Path, size: tuple[int, int], fps: float, frame_count: int, restart: bool) -> Output:
     """The output for the name of a file. Raises BadInput for a suffix or a pattern that cannot be, IoError."""
-    check_suffix(path, (".png", *FILM_SUFFIXES))
+    suffix = check_suffix(path, (".png", *FILM_SUFFIXES))
     folder = path.parent
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise _core.IoError(f'cannot write to "{folder}": {error.strerror}') from error
-    if path.suffix.lower() != ".png":
+    if suffix != ".png":
         return Film(path, size, fps)
     if frame_count > 1 and not _HASHES.search(path.name):
         numbered = path.with_name(f"{path.stem}.####.png")
@@ -53,15 +56,15 @@ class Pictures:
     """A PNG for each frame; a run of # in the name becomes the frame's number."""
 
     def __init__(self, pattern: Path, restart: bool):
-        self.pattern, self.restart = pattern, restart
+        self.path, self.restart = pattern, restart
         self._files: list[Path] = []
 
-    def path(self, frame: int) -> Path:
-        return self.pattern.with_name(_HASHES.sub(lambda run: f"{frame:0{len(run[0])}d}", self.pattern.name))
+    def numbered(self, frame: int) -> Path:
+        return self.path.with_name(_HASHES.sub(lambda run: f"{frame:0{len(run[0])}d}", self.path.name))
 
     def has(self, frame: int, stamp: str) -> bool:
-        path = self.path(frame)
-        if self.restart or not path.exists():
+        path = self.numbered(frame)
+        if self.restart or not os.path.exists(path):  # pathlib's raises for a name that is too long
             return False
         found = _read_stamp(path)
         if found is None:
@@ -71,7 +74,7 @@ class Pictures:
         return found == stamp
 
     def write(self, frame: int, picture: np.ndarray, stamp: str) -> None:
-        path = self.path(frame)
+        path = self.numbered(frame)
         _core.publish_file(str(path), _png(picture, stamp))
         self._files.append(path)
 

@@ -1,99 +1,93 @@
-"""The folder of a run as something to look at: its scene, its frames, where its colliders were."""
+"""The cache of a run: its scene, and its frames by number, read and checked against run.json."""
 
 from __future__ import annotations
 
-import contextlib
 from pathlib import Path
 
 import numpy as np
 
 from fontana import _core
-from fontana.bounds import stage_bounds
-from fontana.formats import read_bytes, read_frame
-from fontana.gl.frame_data import FrameData
+from fontana.formats import decode_frame, particle_radius, read_bytes
+from fontana.runs.frame_numbers import parse_frames
 from fontana.runs.manifest import Manifest, hash_text
 from fontana.scene import resolve
 
-_SAMPLED_FRAMES = 8  # how many frames, spread over the run, say where the fluid goes and how fast
+_VECTORS = ("position", "velocity")
 
 
 class Cache:
-    """The finished frames of a run.
+    """The finished frames of the run in `folder`.
 
-    scene      as it was simulated
-    fps        frames a second
+    manifest         run.json
+    scene            as it was simulated
+    simulation       of that scene, at its start: its parameters, and where its colliders are at a time
+    frames           the numbers of the frames, ascending
+    frame_duration   s
+    frame_rate       frames a second
+    unit             metres in a unit of positions, 1 unless the scene has another time.simulation_scale
+    particle_radius  half the particle spacing, in that unit
+
+    Raises BadInput if the folder is not that of a run or has no frames yet.
     """
 
     def __init__(self, folder: Path):
-        """Raises BadInput if the folder is not that of a run, or no frame of it is finished."""
         manifest = Manifest.load(folder)
         if manifest is None:
             raise _core.BadInput(f'"{folder}" has no run.json: it is not the folder of a run')
         if not manifest.frames:
-            raise _core.BadInput(f'"{folder}" has no finished frames to show')
+            raise _core.BadInput(f'"{folder}" has no finished frames yet')
         self.folder = folder
-        self.records = manifest.frames
+        self.manifest = manifest
         self.scene = resolve(manifest.data["scene"], manifest.data["scene"]["name"])
-        self._simulation = self.scene.build()
-        self._rest_density = self._simulation.get("fluid.rest_density")
-        self._scale = self._simulation.get("time.simulation_scale")
-        self.frame_duration = self._simulation.derived().frame_duration
+        self.simulation = self.scene.build()
+        self._records = {record["frame"]: record for record in manifest.frames}
+        self.frame_duration = self.simulation.derived().frame_duration
+        self.frame_rate = _round_rate(1.0 / self.frame_duration)
+        self.unit = self.simulation.get("time.simulation_scale")
+        self.particle_radius = particle_radius(self.simulation)
 
     @property
-    def fps(self) -> float:
-        return 1.0 / self.frame_duration
+    def frames(self) -> list[int]:
+        return list(self._records)
 
-    @property
-    def frame_count(self) -> int:
-        return len(self.records)
+    def record(self, frame: int) -> dict:
+        """What run.json says of a frame."""
+        return self._records[frame]
 
-    def load(self, frame: int) -> FrameData:
-        """The particles of `frame`, from 1. Raises IoError if its file is missing or not as it was written."""
-        record = self.records[frame - 1]
-        file = record["files"][0]
-        path = self.folder / file["file"]
-        data = read_bytes(path)
-        if len(data) != file["bytes"] or hash_text(_core.hash(data)) != file["hash"]:
-            raise _core.IoError(f'"{path}" is damaged: it is not what the run wrote')
-        arrays = read_frame(path)
-        radius = float(arrays["radius"][0]) if len(arrays["radius"]) else 1.0
-        names = ("position", "velocity", "density", "pressure", "id")
-        time = record.get("time", frame * self.frame_duration)
-        return FrameData(
-            **{name: arrays[name] for name in names},
-            radius=radius,
-            rest_density=self._rest_density,
-            centres=self.centres(time),
-            centre_velocities=self._centre_velocities(time),
-            time=time,
-            simulation_scale=self._scale,
-        )
+    def path(self, frame: int) -> Path:
+        return self.folder / self._file(frame)["file"]
 
-    def centres(self, time: float) -> list[np.ndarray]:
-        """Where the colliders are at `time` (s), in the order of the scene."""
-        count = self._simulation.collider_count
-        return [np.array(self._simulation.collider_centre(index, time)) for index in range(count)]
+    def hash(self, frame: int) -> str:
+        """The hash that run.json has of the frame's file."""
+        return self._file(frame)["hash"]
 
-    def _centre_velocities(self, time: float) -> list[np.ndarray]:
-        """m/s, within half a frame: keys are straight between frames at the closest."""
-        half = 0.25 * self.frame_duration
-        before, after = self.centres(max(0.0, time - half)), self.centres(time + half)
-        return [(b - a) / (time + half - max(0.0, time - half)) for a, b in zip(before, after, strict=True)]
+    def select(self, text: str | None) -> list[int]:
+        """The frames that a text such as "1-48/2" or "1,5,10-20" names, all without one. Raises BadInput."""
+        return parse_frames(text, self.frames)
 
-    def bounds(self) -> np.ndarray:
-        """The box (2, 3) that holds what is worth seeing in all frames. Frames that cannot be read do not count."""
-        return stage_bounds(self.scene.colliders, [frame.position for frame in self._sampled()])
+    def read(self, frame: int) -> dict[str, np.ndarray]:
+        """The attributes of a frame by name, as `fontana.read_frame` gives them.
 
-    def value_range(self, color_by: str) -> tuple[float, float]:
-        """The lowest and the highest value of `FrameData.value_range` over the run."""
-        ranges = [frame.value_range(color_by) for frame in self._sampled()] or [(0.0, 1.0)]
-        return min(low for low, _ in ranges), max(high for _, high in ranges)
+        Raises IoError if its file is missing, is not what the run wrote, or has a place or speed that is no number.
+        """
+        return read_checked(self.path(frame), self.hash(frame))
 
-    def _sampled(self) -> list[FrameData]:
-        """Frames spread over the run, those of them that can be read."""
-        wanted = np.linspace(1, self.frame_count, min(self.frame_count, _SAMPLED_FRAMES)).round().astype(int)
-        frames = []
-        for frame in wanted:
-            with contextlib.suppress(_core.IoError):
-                frames.append(self.load(int(frame)))
-        return frames
+    def _file(self, frame: int) -> dict:
+        """The first of the files that have the frame: each format has all of it."""
+        return self._records[frame]["files"][0]
+
+
+def read_checked(path: Path, expected_hash: str) -> dict[str, np.ndarray]:
+    """The attributes in a frame's file, once its content has the expected hash. Raises IoError."""
+    data = read_bytes(path)
+    if hash_text(_core.hash(data)) != expected_hash:
+        raise _core.IoError(f'"{path}" is not what the run wrote: it is damaged, or was replaced')
+    arrays = decode_frame(data, path)
+    if not all(np.isfinite(arrays[name]).all() for name in _VECTORS):
+        raise _core.IoError(f'"{path}" has particles whose place or speed is not a finite number')
+    return arrays
+
+
+def _round_rate(rate: float) -> float:
+    """24 rather than 23.999999: one divided by a duration that was one divided by a rate."""
+    return round(rate, 6)

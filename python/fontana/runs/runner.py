@@ -59,7 +59,7 @@ def run_scene(scene: Scene, options: RunOptions, reporter: Reporter) -> None:
     _check_source(scene, simulation)
     folder = RunFolder(options.out, scene.name)
     folder.create()
-    with FolderLock(folder.path) as lock, StopSignals() as stop:
+    with FolderLock(folder.path) as lock, StopSignals("stopping after this frame and saving a checkpoint") as stop:
         for note in [*lock.notes, *scene.notes]:
             reporter.note(note)
         _Run(scene, simulation, options, folder, reporter, stop).execute()

@@ -9,19 +9,18 @@ import time
 
 PATIENCE = 5.0  # s for the frame to finish: a farm that sends SIGTERM gives about ten
 
-RUN_MESSAGE = "stopping after this frame and saving a checkpoint; once more stops at once"
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class StopSignals:
     """Catches the signals while in the `with` block, and says `message`; only the main thread can.
 
-    message    what to say when the first one comes
+    message    what to say when the first one comes, before "; once more stops at once"
     requested  the signal that came, or None
     """
 
-    def __init__(self, message: str = RUN_MESSAGE) -> None:
-        self._message = f"{message}\n".encode()
+    def __init__(self, message: str) -> None:
+        self._message = f"{message}; once more stops at once\n".encode()
         self.requested: int | None = None
         self._since = 0.0
         self._previous: dict[int, object] = {}

@@ -13,8 +13,10 @@ from fontana.viewer.look import ACCENT, ERROR, TEXT, WARNING
 from fontana.viewer.model import ViewerModel
 
 _MOST_KERNELS = 8
+_LONGEST_FACT = "pressure iterations"  # of the words that come and go
 _LEGEND_STEPS = 64
 _LEGEND_HEIGHT = 4.0  # in heights of the font, without its padding
+_STATISTICS_WIDTH = 22.0  # likewise, with its longest rows
 _HAND, _HAND_EDGE = (1.0, 1.0, 1.0, 0.95), (0.0, 0.0, 0.0, 0.45)
 _MARGIN = 0.7  # likewise, around what lies over the picture
 
@@ -51,6 +53,11 @@ def draw_statistics(model: ViewerModel, box: Box, draw_seconds: float) -> None:
         return
     _begin("statistics", box, (1.0, 0.0))
     if imgui.begin_table("facts", 2, imgui.TableFlags_.sizing_fixed_fit.value):
+        # A column fits itself to its words one picture late, and would cut a longer one until then.
+        for column in (0, 1):
+            words = [row[column] for row in rows]
+            width = max(imgui.calc_text_size(text).x for text in [*words, _LONGEST_FACT])
+            imgui.table_setup_column(f"##{column}", imgui.TableColumnFlags_.width_fixed.value, width)
         for name, text in rows:
             imgui.table_next_row()
             imgui.table_next_column()
@@ -146,7 +153,8 @@ def draw_messages(model: ViewerModel, box: Box) -> None:
     if not rows:
         return
     em = imgui.get_font_size()
-    width = max(12 * em, min(0.5 * box.width, 42 * em))
+    beside = _STATISTICS_WIDTH if model.shows_statistics else 0.0
+    width = max(12 * em, min(box.width - (beside + 3 * _MARGIN) * em, 42 * em))
     imgui.set_next_window_pos(ImVec2(box.x + _MARGIN * em, box.y + _MARGIN * em))
     imgui.set_next_window_size(ImVec2(width, 0))
     imgui.set_next_window_bg_alpha(0.92)
@@ -157,13 +165,13 @@ def draw_messages(model: ViewerModel, box: Box) -> None:
     imgui.push_text_wrap_pos(0.0)
     for text, color in rows:
         imgui.text_colored(ImVec4(*color), text.replace("%", "%%"))
-    imgui.pop_text_wrap_pos()
     if failure:
         if imgui.button("Restart"):
             model.restart()
         if not failure.is_final:
             imgui.same_line()
             imgui.text_colored(ImVec4(*WARNING), "or change what it names, and it goes on")
+    imgui.pop_text_wrap_pos()
     imgui.end()
 
 

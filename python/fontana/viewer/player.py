@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 from fontana import _core
+from fontana.gl.footage import Footage
 from fontana.runs.cache import Cache
 from fontana.viewer.settings import Settings
 from fontana.viewer.snapshot import Snapshot
@@ -30,13 +31,14 @@ class CachePlayer:
 
     def __init__(self, folder: Path, is_playing: bool = True):
         self.cache = Cache(folder)
+        self.footage = Footage(self.cache)
         self.scene = self.cache.scene
         self.settings = Settings(self.scene)
-        self.numbers = list(range(1, self.cache.frame_count + 1))
+        self.numbers = self.cache.frames
         self.skipped: dict[int, str] = {}
         self.loops = True
         self.is_playing = is_playing
-        self.frames_per_second = self.cache.fps
+        self.frames_per_second = self.cache.frame_rate
         self._number = self.numbers[0]
         self._shown: Snapshot | None = None
         self._loaded: dict[int, Snapshot] = {}
@@ -49,7 +51,7 @@ class CachePlayer:
     @property
     def frame_rate(self) -> float:
         """Frames a second at which it looks natural."""
-        return self.cache.fps
+        return self.cache.frame_rate
 
     @property
     def number(self) -> int:
@@ -143,17 +145,17 @@ class CachePlayer:
     def _load(self, number: int) -> None:
         start = time.monotonic()
         try:
-            data = self.cache.load(number)
+            data = self.footage.load(number)
         except (_core.FontanaError, KeyError, MemoryError) as error:
             with self._condition:
-                self.skipped[number] = f"frame {number} skipped: {error}"
+                self.skipped[number] = f"frame {number} is skipped: {error}"
             return
         phases = {"read": time.monotonic() - start}
-        record = self.cache.records[number - 1]
+        record = self.cache.record(number)
         if "seconds" in record:
             phases = {"simulate": record["seconds"]} | phases
         with self._condition:
-            self._loaded[number] = Snapshot(number, record.get("time", 0.0), data, record, "", phases)
+            self._loaded[number] = Snapshot(number, data.time, data, record, "", phases)
             self._forget_distant()
 
     def _forget_distant(self) -> None:

@@ -1,15 +1,17 @@
-"""What making files says: a bar at a terminal, a line a frame in a log, JSON lines for programs."""
+"""What making files out of a cache says: a bar at a terminal, a line a frame in a log, JSON lines for programs."""
 
 from __future__ import annotations
 
 import json
 import sys
 import time
+from collections.abc import Sequence
+from pathlib import Path
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from fontana.runs.text import clock
+from fontana.runs.text import clock, data_size
 
 
 class Quiet:
@@ -24,8 +26,11 @@ class Quiet:
     def frame(self, entry: dict) -> None:
         """A frame is done: {"frame": ..., "text": what it is like, ...}."""
 
-    def finish(self, files: str) -> None:
-        """All is on disk."""
+    def skip(self, frame: int, reason: str) -> None:
+        """A frame cannot be read."""
+
+    def finish(self, files: Sequence[Path]) -> None:
+        """All is on disk, in these files."""
 
     def close(self) -> None:
         """Leaves the terminal as it was; safe to call twice."""
@@ -36,29 +41,37 @@ class Lines(Quiet):
 
     def __init__(self) -> None:
         self.console = Console(highlight=False, soft_wrap=True)
-        self._begin, self._made, self._total = time.monotonic(), 0, 0
+        self._begin, self._made, self._left, self._total = time.monotonic(), 0, 0, 0
 
     def note(self, sentence: str) -> None:
-        self.console.print(f"note: {sentence}", markup=False)
+        self._print(f"note: {sentence}")
 
     def start(self, what: str, total: int, done: int) -> None:
-        self._total = total
+        self._begin, self._total, self._left = time.monotonic(), total, total - done
         there = f", {done} of them there already" if done else ""
-        self.console.print(f"{what}: {total} frame{'s' * (total != 1)}{there}", markup=False)
+        self._print(f"{what}: {total} frame{'s' * (total != 1)}{there}")
 
     def frame(self, entry: dict) -> None:
-        self._made += 1
-        self.console.print(f"frame {entry['frame']:4d}  {entry['text']}", markup=False)
+        self._made, self._left = self._made + 1, self._left - 1
+        remaining = (time.monotonic() - self._begin) / self._made * self._left
+        self._print(f"frame {entry['frame']:4d}  {entry['text']}  ETA {clock(remaining)}")
 
-    def finish(self, files: str) -> None:
+    def skip(self, frame: int, reason: str) -> None:
+        self._left -= 1
+        self.note(f"frame {frame} is skipped: {reason}")
+
+    def finish(self, files: Sequence[Path]) -> None:
         self.close()
         seconds = time.monotonic() - self._begin
-        self.console.print(f"done: {self._made} of {self._total} frames made now, in {clock(seconds)}", markup=False)
-        self.console.print(f"  files  {files}", markup=False)
+        self._print(f"done: {self._made} of {self._total} frames made now, in {clock(seconds)}")
+        self._print(f"  files  {_describe(files)}")
+
+    def _print(self, text: str) -> None:
+        self.console.print(text, markup=False)
 
 
 class Bar(Lines):
-    """A bar on a terminal."""
+    """A bar on a terminal; what is skipped stays above it."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -77,12 +90,16 @@ class Bar(Lines):
         self._made += 1
         self._progress.update(self._task, advance=1, description=f"frame {entry['frame']}", text=entry["text"])
 
+    def skip(self, frame: int, reason: str) -> None:
+        super().skip(frame, reason)
+        self._progress.advance(self._task)
+
     def close(self) -> None:
         self._progress.stop()
 
 
 class Json(Quiet):
-    """One JSON object a line: {"event": "start" | "note" | "frame" | "finish" | "error", ...}."""
+    """One JSON object a line: {"event": "start" | "note" | "frame" | "skipped" | "finish" | "error", ...}."""
 
     def note(self, sentence: str) -> None:
         self._emit("note", message=sentence)
@@ -93,11 +110,20 @@ class Json(Quiet):
     def frame(self, entry: dict) -> None:
         self._emit("frame", **{name: value for name, value in entry.items() if name != "text"})
 
-    def finish(self, files: str) -> None:
-        self._emit("finish", files=files)
+    def skip(self, frame: int, reason: str) -> None:
+        self._emit("skipped", frame=frame, message=reason)
+
+    def finish(self, files: Sequence[Path]) -> None:
+        self._emit("finish", files=[str(path) for path in files])
 
     def _emit(self, event: str, **values: object) -> None:
         print(json.dumps({"event": event} | values), flush=True)
+
+
+def _describe(files: Sequence[Path]) -> str:
+    """ "water/w.0001.ply to w.0048.ply (3.2 MB)"."""
+    last = f" to {files[-1].name}" if len(files) > 1 else ""
+    return f"{files[0]}{last} ({data_size(sum(path.stat().st_size for path in files))})"
 
 
 def make_progress(as_json: bool, quiet: bool) -> Quiet:
