@@ -1,4 +1,4 @@
-"""`fontana bench houdini`: the thesis's Tables 3 and 4 anew, through the solver node's cook on a double of the HDK."""
+"""`fontana bench houdini`: Tables 3 and 4 of the thesis and their plots, by the node's cook on a double of the HDK."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fontana import _core
 from fontana.bench._cook import build_driver, run_driver
 from fontana.bench._houdini_tables import print_results, progress_text
 from fontana.bench._machine import describe_conditions, missing_backends, note_end
-from fontana.bench._results import publish_json
+from fontana.bench._results import publish_json, publish_picture
 from fontana.bench._scenes import BENCH_SCENES, SPACING, bench_scene
 from fontana.bench._schemes import SCHEMES, Scheme
 from fontana.bench._text import count_list, word_list
@@ -33,7 +33,7 @@ _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
     type=click.Path(path_type=Path, dir_okay=False),
     default=Path("out/bench/houdini.json"),
     show_default=True,
-    help="File of the results.",
+    help="File of the results; their picture, a .png, is beside it.",
 )
 @click.option(
     "--counts",
@@ -62,7 +62,7 @@ _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
 )
 @click.option("--threads", type=click.IntRange(0), default=0, help="Threads of the CPU columns; 0: all cores.")
 def command(path: Path, counts: list[int], budget: float, scene_names: list[str], threads: int) -> None:
-    """Time the solver node's cook beside the same frames through the library: Tables 3 and 4.
+    """Time the solver node's cook beside the same frames through the library: Tables 3 and 4, Figs. 17 and 18.
 
     The node is compiled against a double of the HDK and cooks in it: points in, ten substeps, points out. Frames of
     both are taken in turn. Needs a checkout of Fontana and cmake; the first run builds. Ctrl-C keeps what is measured.
@@ -71,10 +71,14 @@ def command(path: Path, counts: list[int], budget: float, scene_names: list[str]
     Examples:
       fontana bench houdini
       fontana bench houdini --counts 100000 --scenes box --budget 90 --json houdini.json
+      fontana bench plot out/bench/houdini.json
     """
     for name in scene_names or [""]:
         if name not in BENCH_SCENES:
             raise _core.BadInput(f'--scenes: no scene "{name}" to measure{suggestion(name, BENCH_SCENES)}')
+    picture = path.with_suffix(".png")
+    if picture == path:
+        raise _core.BadInput(f"--json: {path} is the name of the picture; expected another ending, such as .json")
     results = describe_results(counts, budget, scene_names, threads)
     publish_json(path, results)  # a folder that cannot be written is found now, not in the end
     click.echo("building the node against the double of the HDK ...", err=True)
@@ -86,7 +90,8 @@ def command(path: Path, counts: list[int], budget: float, scene_names: list[str]
         note_end(results, "interrupted")
     publish_json(path, results)
     print_results(results)
-    click.echo(f"written: {path}")
+    publish_picture(results, picture)
+    click.echo(f"written: {path}, {picture}")
     if results["state"] == "interrupted":
         raise KeyboardInterrupt
 

@@ -10,7 +10,7 @@ import click
 
 from fontana import _core
 from fontana.bench._machine import describe_conditions, missing_backends, note_end
-from fontana.bench._results import publish_json
+from fontana.bench._results import publish_json, publish_picture
 from fontana.bench._scenes import BENCH_SCENES, SPACING, bench_scene
 from fontana.bench._schemes import REFERENCE, SCHEMES, Scheme
 from fontana.bench._tables import print_results, progress_text
@@ -82,16 +82,10 @@ def command(out: Path, counts: list[int], budget: float, scene_names: list[str],
         note_end(results, "interrupted")
     publish_json(path, results)
     print_results(results)
-    _draw(results, path.with_suffix(".png"))
+    publish_picture(results, path.with_suffix(".png"))
     click.echo(f"written: {path}, {path.with_suffix('.png')}")
     if results["state"] == "interrupted":
         raise KeyboardInterrupt
-
-
-def _draw(results: dict, picture: Path) -> None:
-    from fontana.bench._thesis_figure import publish_figure  # matplotlib is slow to import
-
-    publish_figure(results, picture)
 
 
 def describe_results(counts: list[int], budget: float, scene_names: list[str], threads: int) -> dict:
