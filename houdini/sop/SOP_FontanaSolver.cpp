@@ -50,9 +50,11 @@ int SOP_FontanaSolver::on_reset(void* node, int, fpreal64, const PRM_Template*) 
 
 void SOP_FontanaSolver::reset() {
     session_.request_stop();
-    const std::lock_guard<std::mutex> lock(cooking_);
-    session_.reset();
-    forceRecook();
+    {
+        const std::lock_guard<std::mutex> lock(cooking_);
+        session_.reset();
+    }
+    forceRecook();  // without the lock: it may cook at once
 }
 
 OP_ERROR SOP_FontanaSolver::cookMySop(OP_Context& context) {
@@ -152,11 +154,11 @@ void SOP_FontanaSolver::list_devices(void* node, PRM_Name* names, int room, cons
         if (backend != devices[k].backend) continue;
         const std::string label = devices[k].available ? std::string(devices[k].name)
                                                        : std::string(devices[k].name) + " - " + devices[k].reason;
-        names[index] = PRM_Name(std::to_string(index).c_str(), label.c_str());
+        names[index].setTokenAndLabel(std::to_string(index).c_str(), label.c_str());  // copies; a constructor would not
         ++index;
     }
-    if (index == 0 && room > 1) names[index++] = PRM_Name("0", "The first that is there");
-    names[index] = PRM_Name(nullptr);
+    if (index == 0 && room > 1) names[index++].setTokenAndLabel("0", "The first that is there");
+    names[index].setAsSentinel();
 }
 
 void SOP_FontanaSolver::fillInfoTreeNodeSpecific(UT_InfoTree& tree, const OP_NodeInfoTreeParms& parms) {

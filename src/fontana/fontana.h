@@ -260,7 +260,8 @@ FONTANA_API fontana_status fontana_save_checkpoint(fontana_simulation*, const ch
 FONTANA_API fontana_status fontana_load_checkpoint(fontana_simulation*, const char* path);
 FONTANA_API fontana_status fontana_checkpoint_info(const char* path, int64_t* frame, uint64_t* particle_count,
                                                    char* tag, size_t tag_room);
-/* The same in memory, for a host that goes back in time. `*data` belongs to the simulation until its next save. */
+/* The same in memory, for a host that goes back in time; not the bytes of a file. `*data` belongs to the simulation
+ * until its next save. */
 FONTANA_API fontana_status fontana_save_state(fontana_simulation*, const void** data, size_t* bytes);
 FONTANA_API fontana_status fontana_load_state(fontana_simulation*, const void* data, size_t bytes);
 /* For the files a host writes itself: same guarantee. `hash` (may be NULL) gets the content's 64-bit hash. */

@@ -120,6 +120,16 @@ def test_plot_refuses_other_files(tmp_path, text):
     assert not (tmp_path / "other.png").exists()
 
 
+@pytest.mark.parametrize("benchmark", ["thesis", "houdini"])
+@pytest.mark.parametrize("state", ["measured", "cut off"])
+def test_plot_refuses_a_cell_without_its_number(small_run, tmp_path, benchmark, state):
+    results = read(small_run[0] / "thesis.json") | {"benchmark": benchmark}
+    results["scenes"] = {"box": [{"particles": 100, "cells": {"CPU grid": {"state": state}}}]}
+    (tmp_path / "other.json").write_text(json.dumps(results))
+    done = call(["-m", "fontana", "bench", "plot", "other.json"], tmp_path, code=2)
+    assert "CPU grid" in done.stderr and "required" in done.stderr
+
+
 def test_all_pairs_is_cut_off_by_time(tmp_path):
     done = thesis(tmp_path, "--counts", "100,5000", "--budget", 0.005, "--scenes", "box")
     cell = read(tmp_path / "out/bench/thesis.json")["scenes"]["box"][1]["cells"]["CPU simple"]

@@ -117,6 +117,11 @@ static void a_damaged_state_changes_nothing(void) {
         copy[k] ^= 0x40;
         BAD(fontana_load_state(s, copy, k), "the state in memory");
     }
+    for (size_t k = bytes - 16; k < bytes; ++k) { /* the footer */
+        copy[k] ^= 0x01;
+        BAD(fontana_load_state(s, copy, bytes), "the state in memory");
+        copy[k] ^= 0x01;
+    }
     BAD(fontana_load_state(s, NULL, 0), "the state in memory");
     BAD(fontana_load_state(s, NULL, bytes), "data");
     BAD(fontana_save_state(s, NULL, &bytes), "data");

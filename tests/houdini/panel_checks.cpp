@@ -156,7 +156,7 @@ void the_switches() {
     CHECK(texts["solver.backend"] == "cpu" && numbers["time.frame_rate"].at(0) == 24.0);
     set_int(solver, "use_gpu", 1);
     hdk_double::cook(solver, 1);
-    CHECK(texts["solver.backend"] == "opencl");
+    CHECK(texts["solver.backend"] == solver.template_of("solver_backend").menu.at(2).first);
 }
 
 // Within a frame a keyed centre moves from where it was at the frame before.
@@ -186,7 +186,10 @@ void the_panes_of_the_thesis(const SOP_Node& solver) {
 void the_device_menu(SOP_Node& solver) {
     set_int(solver, "solver_backend", 1);
     const auto menu = hdk_double::menu_of(solver, "solver_device");
-    CHECK(menu.size() == 1 && menu[0].first == "0" && !menu[0].second.empty());
+    const fontana_device* devices = nullptr;
+    std::size_t count = 0;
+    fontana_list_devices(&devices, &count);
+    CHECK(count > 0 && menu.size() == 1 && menu[0].first == "0" && menu[0].second == devices[0].name);
 }
 
 }  // namespace

@@ -22,15 +22,15 @@ def bench_houdini(folder: Path, *options: object) -> subprocess.CompletedProcess
 
 
 @pytest.fixture(scope="module")
-def small_run(tmp_path_factory, native_build) -> tuple[dict, str]:
+def small_run(tmp_path_factory, native_build) -> tuple[dict, str, Path]:
     path = tmp_path_factory.mktemp("bench") / "houdini.json"
     done = bench_houdini(ROOT, "--counts", "100,300", "--budget", 0.2, "--threads", 1, "--json", path)
     assert done.returncode == 0, done.stderr
-    return json.loads(path.read_text()), done.stdout
+    return json.loads(path.read_text()), done.stdout, path
 
 
 def test_every_number_of_the_tables_is_there(small_run):
-    results, _ = small_run
+    results, _, _ = small_run
     assert results["state"] == "finished" and set(results["scenes"]) == {"fountain", "box"}
     for rows in results["scenes"].values():
         assert [row["particles"] for row in rows] == [100, 300]
@@ -49,10 +49,25 @@ def test_every_number_of_the_tables_is_there(small_run):
 
 
 def test_the_tables_show_the_thesis_and_say_what_they_are_not(small_run):
-    _, text = small_run
+    _, text, _ = small_run
     assert "Table 3" in text and "Table 4" in text
     assert "(3.4)" in text  # Table 3, 100 particles, CPU simple
     assert "not in Houdini" in text
+
+
+def test_the_figures_are_drawn_and_drawn_again(small_run, tmp_path):
+    _, _, path = small_run
+    picture = path.with_suffix(".png").read_bytes()
+    again = tmp_path / "again.png"
+    command = [sys.executable, "-m", "fontana", "bench", "plot", path, "--out", again]
+    subprocess.run(command, check=True, capture_output=True, timeout=120)
+    assert picture[:4] == b"\x89PNG" and again.read_bytes() == picture
+
+
+def test_results_do_not_share_the_name_of_their_picture(tmp_path):
+    done = bench_houdini(tmp_path, "--json", "houdini.png")
+    assert done.returncode == 2 and "expected another ending" in done.stderr.replace("\n", " ")
+    assert not (tmp_path / "houdini.png").exists()
 
 
 def test_outside_a_checkout_the_sentence_says_so(tmp_path):

@@ -5,28 +5,16 @@ from __future__ import annotations
 import click
 
 from fontana.bench._machine import load_remark
-from fontana.bench._schemes import SCHEMES, THESIS_HARDWARE, gpu_remark
+from fontana.bench._schemes import (
+    SCHEMES,
+    THESIS_HARDWARE,
+    THESIS_HOUDINI_PLACES,
+    THESIS_SECONDS,
+    gpu_remark,
+)
 from fontana.bench._tables import failures
 from fontana.bench._text import print_table, short_number
 from fontana.runs.text import clock as clock_text
-
-# Seconds of the thesis's Tables 3 and 4, by scene and particle count, in the order of SCHEMES; of how many frames it
-# does not say.
-THESIS_SECONDS: dict[str, dict[int, tuple[float, ...]]] = {
-    "fountain": {
-        100: (3.4, 2.3, 2.1, 2.2),
-        1_000: (111.3, 4.3, 5.3, 3.2),
-        10_000: (1200.0, 58.7, 150.8, 10.9),
-        100_000: (3000.0, 700.0, 1400.0, 116.7),
-    },
-    "box": {
-        100: (3.3, 2.3, 2.3, 2.3),
-        1_000: (110.6, 4.9, 5.5, 3.1),
-        10_000: (1300.0, 119.6, 151.6, 12.8),
-        100_000: (3200.0, 800.0, 1500.0, 161.6),
-    },
-}
-_TABLES = {"fountain": "Table 3", "box": "Table 4"}
 
 
 def print_results(results: dict) -> None:
@@ -34,7 +22,7 @@ def print_results(results: dict) -> None:
     for name, rows in results["scenes"].items():
         if rows:
             columns = ["particles", *(scheme.name for scheme in SCHEMES)]
-            title = f"{name}: seconds a frame in the node ({_TABLES[name]}: a run)"
+            title = f"{name}: seconds a frame in the node ({THESIS_HOUDINI_PLACES[name][0]}: a run)"
             print_table(title, columns, [_line(name, row, _seconds_text) for row in rows])
             title = f"{name}: what the node adds, percent by the clock, and of processor time"
             print_table(title, columns, [_line(name, row, _overhead_text) for row in rows])

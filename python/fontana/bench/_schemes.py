@@ -43,6 +43,24 @@ THESIS_TABLES: dict[str, dict[int, tuple[float | None, ...]]] = {
 }
 THESIS_PLACES = {"fountain": ("Table 1", "Fig. 15"), "box": ("Table 2", "Fig. 16")}
 
+# Seconds of the thesis's Tables 3 and 4, by scene and particle count, in the order of SCHEMES; of how many frames it
+# does not say.
+THESIS_SECONDS: dict[str, dict[int, tuple[float, ...]]] = {
+    "fountain": {  # Table 3, Fig. 17
+        100: (3.4, 2.3, 2.1, 2.2),
+        1_000: (111.3, 4.3, 5.3, 3.2),
+        10_000: (1200.0, 58.7, 150.8, 10.9),
+        100_000: (3000.0, 700.0, 1400.0, 116.7),
+    },
+    "box": {  # Table 4, Fig. 18
+        100: (3.3, 2.3, 2.3, 2.3),
+        1_000: (110.6, 4.9, 5.5, 3.1),
+        10_000: (1300.0, 119.6, 151.6, 12.8),
+        100_000: (3200.0, 800.0, 1500.0, 161.6),
+    },
+}
+THESIS_HOUDINI_PLACES = {"fountain": ("Table 3", "Fig. 17"), "box": ("Table 4", "Fig. 18")}
+
 
 def gpu_remark(results: dict) -> str | None:
     """What has to be said about the OpenCL numbers, or None where a GPU ran them."""

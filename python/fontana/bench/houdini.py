@@ -1,4 +1,4 @@
-"""`fontana bench houdini`: the thesis's Tables 3 and 4 anew, through the solver node's cook on a double of the HDK."""
+"""`fontana bench houdini`: Tables 3 and 4 of the thesis and their plots, by the node's cook on a double of the HDK."""
 
 from __future__ import annotations
 
@@ -13,12 +13,11 @@ from fontana import _core
 from fontana.bench._cook import build_driver, run_driver
 from fontana.bench._houdini_tables import print_results, progress_text
 from fontana.bench._machine import describe_conditions, missing_backends, note_end
-from fontana.bench._results import publish_json
-from fontana.bench._scenes import BENCH_SCENES, SPACING, bench_scene
+from fontana.bench._options import budget_option, counts_option, scenes_option, threads_option
+from fontana.bench._results import publish_json, publish_picture
+from fontana.bench._scenes import SPACING, bench_scene
 from fontana.bench._schemes import SCHEMES, Scheme
-from fontana.bench._text import count_list, word_list
 from fontana.bench._timing import SUBSTEPS_PER_FRAME, significant, statistics
-from fontana.tables import suggestion
 
 WARM_UP_FRAMES = 2
 LEAST_PAIRS, MOST_PAIRS = 5, 30
@@ -33,36 +32,14 @@ _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
     type=click.Path(path_type=Path, dir_okay=False),
     default=Path("out/bench/houdini.json"),
     show_default=True,
-    help="File of the results.",
+    help="File of the results; their picture, a .png, is beside it.",
 )
-@click.option(
-    "--counts",
-    default="100,1000,10000,100000",
-    show_default=True,
-    callback=count_list,
-    metavar="N,N,...",
-    help="Particle counts: the rows.",
-)
-@click.option(
-    "--budget",
-    type=click.FloatRange(0, min_open=True),
-    default=20.0,
-    show_default=True,
-    metavar="SECONDS",
-    help="For each number; a scheme that would need more for five pairs of frames is cut off.",
-)
-@click.option(
-    "--scenes",
-    "scene_names",
-    default="fountain,box",
-    show_default=True,
-    callback=word_list,
-    metavar="NAME,NAME",
-    help="Which tables.",
-)
-@click.option("--threads", type=click.IntRange(0), default=0, help="Threads of the CPU columns; 0: all cores.")
+@counts_option
+@budget_option(20.0, "five pairs of frames")
+@scenes_option
+@threads_option
 def command(path: Path, counts: list[int], budget: float, scene_names: list[str], threads: int) -> None:
-    """Time the solver node's cook beside the same frames through the library: Tables 3 and 4.
+    """Time the solver node's cook beside the same frames through the library: Tables 3 and 4, Figs. 17 and 18.
 
     The node is compiled against a double of the HDK and cooks in it: points in, ten substeps, points out. Frames of
     both are taken in turn. Needs a checkout of Fontana and cmake; the first run builds. Ctrl-C keeps what is measured.
@@ -71,10 +48,11 @@ def command(path: Path, counts: list[int], budget: float, scene_names: list[str]
     Examples:
       fontana bench houdini
       fontana bench houdini --counts 100000 --scenes box --budget 90 --json houdini.json
+      fontana bench plot out/bench/houdini.json
     """
-    for name in scene_names or [""]:
-        if name not in BENCH_SCENES:
-            raise _core.BadInput(f'--scenes: no scene "{name}" to measure{suggestion(name, BENCH_SCENES)}')
+    picture = path.with_suffix(".png")
+    if picture == path:
+        raise _core.BadInput(f"--json: {path} is the name of the picture; expected another ending, such as .json")
     results = describe_results(counts, budget, scene_names, threads)
     publish_json(path, results)  # a folder that cannot be written is found now, not in the end
     click.echo("building the node against the double of the HDK ...", err=True)
@@ -86,7 +64,8 @@ def command(path: Path, counts: list[int], budget: float, scene_names: list[str]
         note_end(results, "interrupted")
     publish_json(path, results)
     print_results(results)
-    click.echo(f"written: {path}")
+    publish_picture(results, picture)
+    click.echo(f"written: {path}, {picture}")
     if results["state"] == "interrupted":
         raise KeyboardInterrupt
 

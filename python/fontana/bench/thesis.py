@@ -10,13 +10,12 @@ import click
 
 from fontana import _core
 from fontana.bench._machine import describe_conditions, missing_backends, note_end
-from fontana.bench._results import publish_json
-from fontana.bench._scenes import BENCH_SCENES, SPACING, bench_scene
+from fontana.bench._options import budget_option, counts_option, scenes_option, threads_option
+from fontana.bench._results import publish_json, publish_picture
+from fontana.bench._scenes import SPACING, bench_scene
 from fontana.bench._schemes import REFERENCE, SCHEMES, Scheme
 from fontana.bench._tables import print_results, progress_text
-from fontana.bench._text import count_list, word_list
 from fontana.bench._timing import SUBSTEPS_PER_FRAME, WARM_UP_SUBSTEPS, clock_substeps, significant
-from fontana.tables import suggestion
 
 RESULTS_NAME = "thesis.json"
 _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
@@ -30,32 +29,10 @@ _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
     show_default=True,
     help="Folder of thesis.json and thesis.png.",
 )
-@click.option(
-    "--counts",
-    default="100,1000,10000,100000",
-    show_default=True,
-    callback=count_list,
-    metavar="N,N,...",
-    help="Particle counts: the rows.",
-)
-@click.option(
-    "--budget",
-    type=click.FloatRange(0, min_open=True),
-    default=5.0,
-    show_default=True,
-    metavar="SECONDS",
-    help="For each number; a scheme that would need more for one substep is cut off.",
-)
-@click.option(
-    "--scenes",
-    "scene_names",
-    default="fountain,box",
-    show_default=True,
-    callback=word_list,
-    metavar="NAME,NAME",
-    help="Which tables.",
-)
-@click.option("--threads", type=click.IntRange(0), default=0, help="Threads of the CPU columns; 0: all cores.")
+@counts_option
+@budget_option(5.0, "one substep")
+@scenes_option
+@threads_option
 def command(out: Path, counts: list[int], budget: float, scene_names: list[str], threads: int) -> None:
     """Measure the thesis's four schemes in its two scenes: Tables 1 and 2, Figs. 15 and 16.
 
@@ -69,9 +46,6 @@ def command(out: Path, counts: list[int], budget: float, scene_names: list[str],
       fontana bench thesis --counts 1000,1000000 --scenes box --budget 20
       fontana bench plot out/bench/thesis.json
     """
-    for name in scene_names or [""]:
-        if name not in BENCH_SCENES:
-            raise _core.BadInput(f'--scenes: no scene "{name}" to measure{suggestion(name, BENCH_SCENES)}')
     path = out / RESULTS_NAME
     results = describe_results(counts, budget, scene_names, threads)
     publish_json(path, results)  # a folder that cannot be written is found now, not in the end
@@ -82,16 +56,10 @@ def command(out: Path, counts: list[int], budget: float, scene_names: list[str],
         note_end(results, "interrupted")
     publish_json(path, results)
     print_results(results)
-    _draw(results, path.with_suffix(".png"))
+    publish_picture(results, path.with_suffix(".png"))
     click.echo(f"written: {path}, {path.with_suffix('.png')}")
     if results["state"] == "interrupted":
         raise KeyboardInterrupt
-
-
-def _draw(results: dict, picture: Path) -> None:
-    from fontana.bench._thesis_figure import publish_figure  # matplotlib is slow to import
-
-    publish_figure(results, picture)
 
 
 def describe_results(counts: list[int], budget: float, scene_names: list[str], threads: int) -> dict:

@@ -30,5 +30,5 @@ def bench() -> None:
     Examples:
       fontana bench thesis                        four schemes in two scenes: the thesis's tables anew
       fontana bench houdini                       the solver node on a double of the HDK beside the library
-      fontana bench plot out/bench/thesis.json    its figures from those numbers
+      fontana bench plot out/bench/thesis.json    the figures of either from its numbers
     """

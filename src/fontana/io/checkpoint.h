@@ -1,8 +1,11 @@
 // Checkpoints: named sections of bytes in one file that shows any damage.
 //
-//   header   "FONTANA\0", format version, endian mark, header hash, bytes of the file, number of sections, length of
-//   tag tag      text of the caller's table    per section: name, bytes, hash payloads of the sections, in the order of
-//   the table footer   bytes of the file, hash of everything before the footer
+//   header    "FONTANA\0", format version, endian mark, header hash, bytes of the file, number of sections, bytes of
+//             the tag
+//   tag       text of the caller's
+//   table     per section: name, bytes, hash
+//   payloads  of the sections, in the order of the table
+//   footer    bytes of the file, hash of everything before the footer
 //
 // Numbers are as the machine has them in memory, the payloads too: a checkpoint continues a run on the kind of machine
 // that wrote it. The endian mark refuses the others.
@@ -38,7 +41,7 @@ class CheckpointWriter {
     // old file is read once. Throws Error(FONTANA_IO_ERROR), also if the checkpoint is in place but perhaps not on
     // disk.
     void publish();
-    // The same bytes, appended to `out`.
+    // The same, appended to `out`: for parse() alone, since the footer has no hash of the content.
     void append_to(std::vector<std::byte>& out) const;
 
  private:
@@ -61,7 +64,7 @@ class Checkpoint {
     // asked for. Throws Error: FONTANA_BAD_INPUT for damage or a newer format, FONTANA_IO_ERROR if unreadable.
     static Checkpoint load(const std::string& path);
 
-    // Of the bytes of one; `name` stands for the path in sentences. Throws Error(FONTANA_BAD_INPUT) for damage.
+    // Of what append_to() made; `name` stands for the path in sentences. Throws Error(FONTANA_BAD_INPUT) for damage.
     static Checkpoint parse(const void* data, std::size_t bytes, const std::string& name);
 
     // The same, but takes `path`.previous if `path` cannot be used. `*note` is then a sentence for the user that says

@@ -39,7 +39,9 @@ static_assert(sizeof(TableEntry) == 48 && std::has_unique_object_representations
 
 struct Footer {
     std::uint64_t file_bytes;
-    std::uint64_t content_hash;  // of everything before the footer
+    // Of everything before the footer. In memory of nothing: a host keeps a state each frame, and the hashes of header
+    // and sections cover every byte already.
+    std::uint64_t content_hash;
 };
 static_assert(sizeof(Footer) == 16 && std::has_unique_object_representations_v<Footer>);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <type_traits>
 #include <utility>
 
 #include "io/checkpoint.h"
@@ -91,7 +92,7 @@ class Scanner {
  private:
     void read(void* data, std::size_t bytes, const std::string& what) {
         file_.read(data, bytes, what);
-        content_hash_.update(data, bytes);
+        if constexpr (std::is_same_v<Input, InputFile>) content_hash_.update(data, bytes);
     }
 
     Input& file_;

@@ -70,20 +70,18 @@ checkpoint::Header make_header(const std::string& tag, const std::vector<checkpo
     return header;
 }
 
-// What AtomicFile is to a file, to memory.
+// What AtomicFile is to a file, to memory; but its hash is of nothing, as checkpoint_format.h says.
 class MemoryOutput {
  public:
     explicit MemoryOutput(std::vector<std::byte>& out) : out_(out) {}
     void write(const void* data, std::size_t bytes) {
         const auto* first = static_cast<const std::byte*>(data);
         out_.insert(out_.end(), first, first + bytes);
-        hash_.update(data, bytes);
     }
-    std::uint64_t hash() const { return hash_.value(); }
+    std::uint64_t hash() const { return Hash64().value(); }
 
  private:
     std::vector<std::byte>& out_;
-    Hash64 hash_;
 };
 
 }  // namespace

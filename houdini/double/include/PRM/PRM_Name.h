@@ -1,19 +1,25 @@
 // Of the double, not of the HDK: houdini/double/PROVENANCE.md.
 #pragma once
 
-#include "UT/UT_StringHolder.h"
+#include <memory>
+#include <string>
+#include <utility>
 
+// As in Houdini the constructor only refers to its texts; setTokenAndLabel copies them.
 class PRM_Name {
  public:
-    PRM_Name(const char* token = nullptr, const char* label = nullptr)
-        : is_end_(!token), token_(token), label_(label ? label : token) {}
-    void setToken(const char* token) { *this = PRM_Name(token, label_.c_str()); }
-    void setLabel(const char* label) { label_ = label; }
-    void setTokenAndLabel(const char* token, const char* label) { *this = PRM_Name(token, label); }
-    const char* getToken() const { return is_end_ ? nullptr : token_.c_str(); }
-    const char* getLabel() const { return is_end_ ? nullptr : label_.c_str(); }
+    PRM_Name() = default;  // the end of a list
+    explicit PRM_Name(const char* token, const char* label = nullptr) : token_(token), label_(label ? label : token) {}
+    void setTokenAndLabel(const char* token, const char* label) {
+        copies_ = std::make_shared<const std::pair<std::string, std::string>>(token, label);
+        token_ = copies_->first.c_str();
+        label_ = copies_->second.c_str();
+    }
+    void setAsSentinel() { *this = PRM_Name(); }
+    const char* getToken() const { return token_; }
+    const char* getLabel() const { return label_; }
 
  private:
-    bool is_end_;
-    UT_StringHolder token_, label_;
+    std::shared_ptr<const std::pair<std::string, std::string>> copies_;
+    const char *token_ = nullptr, *label_ = nullptr;
 };
