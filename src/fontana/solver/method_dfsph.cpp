@@ -14,7 +14,7 @@ namespace {
 constexpr float k_jacobi_relaxation = 0.5f;  // safe up to 0.7: the largest eigenvalue of D^-1 K is below 2.85
 constexpr float k_anderson_relaxation = 0.65f;
 constexpr float k_coarse_relaxation = 0.5f;
-constexpr float k_worse = 4.0f;
+constexpr float k_worse = 4.0f;  // times the first residual: a coarse correction that leads there does not help
 constexpr std::uint32_t k_least_iterations = 2;
 constexpr std::uint32_t k_lanes = 1024, k_folded_lanes = 32;
 constexpr std::size_t k_sums = 6;  // floats a lane, as in kernels/anderson.h
