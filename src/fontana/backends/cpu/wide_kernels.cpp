@@ -94,7 +94,10 @@ class Candidates {
             }
             if (!is_last_) break;
         }
-        store(x_ + count_, k_far - Vec{});  // what the last vector holds beyond the last candidate is no neighbour
+        // What the last vector holds beyond the last candidate is no neighbour, and a number: a share of 0 of what lay
+        // in this memory before may be none.
+        store(x_ + count_, k_far - Vec{});
+        for (float* column : {y_, z_, w_}) store(column + count_, Vec{});
     }
 
     void take(uint first, uint end) {
