@@ -173,6 +173,29 @@ static void an_unstable_frame_is_not_finished(void) {
     fontana_destroy(s);
 }
 
+/* Leaves memory that holds no numbers where the next call's stack will lie. */
+static void stain_the_stack(void) {
+    volatile float stain[16384];
+    for (int k = 0; k < 16384; ++k) stain[k] = NAN;
+}
+
+/* A loop over vectors of particles must not let through what its last vector was never given. */
+static void what_lay_on_the_stack_is_in_no_sum(void) {
+    fontana_simulation* s = make_scene(1);
+    set_number(s, "fluid.particle_spacing", 0.05);
+    float position[375];
+    for (int k = 0; k < 125; ++k) {
+        const int place[3] = {k / 25, k / 5 % 5, k % 5};
+        for (int c = 0; c < 3; ++c) position[3 * k + c] = 0.05f * (float)place[c];
+    }
+    OK(fontana_add_particles(s, 125, position, NULL, NULL));
+    for (int frame = 0; frame < 3; ++frame) {
+        stain_the_stack();
+        OK(fontana_step_frame(s, NULL));
+    }
+    fontana_destroy(s);
+}
+
 void test_stepping(void) {
     for (int k = 0; k < method_count; ++k) {
         an_interrupted_frame_goes_on(methods[k]);
@@ -184,4 +207,5 @@ void test_stepping(void) {
     forces_follow_their_particles();
     the_scheme_changes_between_frames();
     an_unstable_frame_is_not_finished();
+    what_lay_on_the_stack_is_in_no_sum();
 }
