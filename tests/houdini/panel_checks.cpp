@@ -149,14 +149,14 @@ void every_row_says_what_the_table_says(const SOP_Node& solver, const fontana_pa
 void the_switches() {
     BlockScene scene(2);
     SOP_Node& solver = plain_solver(scene);
-    set_int(solver, "solver_backend", 3);  // auto, cpu, cuda, opencl
+    set_int(solver, "solver_backend", 3);
     set_int(solver, "use_gpu", 0);
     set_int(solver, "use_scene_rate", 1);
     hdk_double::cook(solver, 1);
     CHECK(texts["solver.backend"] == "cpu" && numbers["time.frame_rate"].at(0) == 24.0);
     set_int(solver, "use_gpu", 1);
     hdk_double::cook(solver, 1);
-    CHECK(texts["solver.backend"] == solver.template_of("solver_backend").menu.at(2).first);
+    CHECK(texts["solver.backend"] == solver.template_of("solver_backend").menu.at(3).first);
 }
 
 // Within a frame a keyed centre moves from where it was at the frame before.
