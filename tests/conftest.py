@@ -1,5 +1,6 @@
 """One test text for every backend: a test that takes `backend` or `scheme` runs on each."""
 
+import ctypes
 import json
 import os
 import shutil
@@ -156,14 +157,20 @@ def drop_cache(finished_drop: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(finished_drop, tmp_path / "drop"))
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def opengl():
-    """A moderngl context without a window; skipped where there is none, which in CI is a failure."""
+    """A moderngl context without a window; skipped where there is none, which in CI is a failure.
+
+    It is let go of with the module: while it is current, a window cannot make its own so.
+    """
     from fontana.gl.context import create_headless_context
 
     try:
-        return create_headless_context()
+        context = create_headless_context()
     except _core.DeviceUnavailable as error:
         if os.environ.get("CI") == "true":
             pytest.fail(str(error))
         pytest.skip(str(error))
+    yield context
+    context.release()
+    ctypes.CDLL("libEGL.so.1").eglReleaseThread()

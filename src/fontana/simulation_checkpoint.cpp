@@ -95,8 +95,9 @@ void Simulation::restore(const Checkpoint& checkpoint) {
     check_ids(state.id);
 
     run.dt_limit[sizeof run.dt_limit - 1] = '\0';
-    solver().particles().upload(state);
-    solver().neighborhood().set_shape(run.grid);
+    Solver& s = solver();  // asks for memory, as the upload does at first; after that nothing may fail
+    s.particles().upload(state);
+    s.neighborhood().set_shape(run.grid);
     emitted_batches_ = std::move(batches);
     run_ = run;
 }

@@ -177,6 +177,7 @@ static void an_unstable_frame_is_not_finished(void) {
 static void stain_the_stack(void) {
     volatile float stain[16384];
     for (int k = 0; k < 16384; ++k) stain[k] = NAN;
+    CHECK(isnan(stain[16383]));
 }
 
 /* A loop over vectors of particles must not let through what its last vector was never given. */

@@ -5,6 +5,6 @@ import pytest
 from fontana.gl.renderer import Renderer
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def renderer(opengl) -> Renderer:
     return Renderer(opengl)
