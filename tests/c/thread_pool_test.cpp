@@ -11,21 +11,12 @@
 
 #include "backends/cpu/radix_sort.h"
 #include "backends/cpu/thread_pool.h"
+#include "check.h"
 
 using fontana::RadixSort;
 using fontana::ThreadPool;
 
 namespace {
-
-std::atomic<int> failed_checks{0};
-
-#define CHECK(expression)                                                                 \
-    do {                                                                                  \
-        if (!(expression)) {                                                              \
-            std::fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, #expression); \
-            ++failed_checks;                                                              \
-        }                                                                                 \
-    } while (false)
 
 constexpr int k_thread_counts[] = {1, 2, 3, 8};
 

@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <map>
 
 namespace stand_in {
@@ -12,7 +13,7 @@ namespace {
 
 // Writes the PTX beside the cache of what was compiled. Returns the file's path, or "".
 std::string write_ptx(const std::string& ptx) {
-    std::string path = "/tmp/fontana-stand-in-XXXXXX";
+    std::string path = (std::filesystem::temp_directory_path() / "fontana-stand-in-XXXXXX").string();
     const int file = mkstemp(path.data());
     if (file < 0) return "";
     const bool is_whole = write(file, ptx.data(), ptx.size()) == static_cast<ssize_t>(ptx.size());

@@ -2,21 +2,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdio>
 #include <string>
 #include <vector>
 
+#include "check.h"
 #include "util/error.h"
 
-#define CHECK(expression)                                                                 \
-    do {                                                                                  \
-        if (!(expression)) {                                                              \
-            std::fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, #expression); \
-            ++failed_checks;                                                              \
-        }                                                                                 \
-    } while (false)
-
-inline int failed_checks = 0;
 // The most bytes asked for in one allocation since it was set to 0: a reader that trusts a count shows up here.
 inline std::size_t largest_allocation = 0;
 

@@ -6,19 +6,10 @@
 #include <random>
 #include <vector>
 
+#include "check.h"
 #include "kernels/kernels.h"
 
 namespace {
-
-int failed_checks = 0;
-
-#define CHECK(expression)                                                                 \
-    do {                                                                                  \
-        if (!(expression)) {                                                              \
-            std::fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, #expression); \
-            ++failed_checks;                                                              \
-        }                                                                                 \
-    } while (false)
 
 constexpr float k_spacing = 0.1f, k_support = 2.0f * k_spacing;
 constexpr uint k_bits = 3, k_side = 1u << k_bits;  // the box of cells; it wraps around

@@ -1,17 +1,18 @@
 // The coarse correction of the pressure solve: what relaxation is slow at, pressure over long distances, found on a few
 // unknowns. They are one a coarse cell of 2 x 2 x 2 cells of the grid (piecewise constant aggregation), with the
 // matrix P^T K P that makes of K = G^T G (Galerkin); then coarser levels, merged two by two along each axis down to
-// 2 x 2 x 2 unknowns, and a V-cycle over them with damped Jacobi (Trottenberg, Oosterlee and Schueller 2001, 8.7).
+// 2 x 2 x 2 unknowns, and a V-cycle over them with damped Jacobi (as in Trottenberg, Oosterlee and Schueller 2001).
 //
 // Only particles where pressure acts or is called for take part, and only cells with at least COARSE_LEAST particles:
-// then the table of a cell has its place by the index of its first particle, and memory follows the particles.
+// then the table of a cell has its place by the index of its first particle, and memory follows the particles. What
+// thinner cells would add to the matrix is missing from it; Anderson's acceleration around the cycle forgives that.
 #ifndef FONTANA_COARSE_H
 #define FONTANA_COARSE_H
 
 #include "coarse_pair.h"
 #include "incompressible.h"
 
-#define COARSE_LEAST 4u
+#define COARSE_LEAST 4u     // of the 8 particles that a full cell has
 #define COARSE_TABLE 36u    // products of the 8 coarse unknowns that one cell's particles feel, symmetric
 #define COARSE_STENCIL 27u  // a coarse cell and its neighbours; slot (x+1) + 3 (y+1) + 9 (z+1)
 #define COARSE_CENTRE 13u
@@ -55,6 +56,7 @@ KERNEL void coarse_weights(THREAD_ARG const uint count, GLOBAL const float4* RES
     weight[i] = factor[i].w > 0.0f && (u[i] > 0.0f || target[i] > 0.0f) ? volume_position[i].w : 0.0f;
 }
 
+// The columns of G P at one particle (coarse_pair.h).
 FN CoarseGradient coarse_gradient(const StepConstants c, uint i, GLOBAL const float4* RESTRICT volume_position,
                                   GLOBAL const float4* RESTRICT factor, GLOBAL const float* RESTRICT weight,
                                   GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list) {

@@ -36,16 +36,17 @@ void CoarseCorrection::reserve(Substep& s) {
     Bits bits = merged({grid.bits_x, grid.bits_y, grid.bits_z});
     if (!levels_.empty() && is_same(levels_.front().shape, level_of(bits))) return;
     levels_.clear();
+    std::vector<Level> levels;  // memory may run out halfway
     for (;;) {
         const CoarseLevel shape = level_of(bits);
         const std::size_t count = coarse_count(shape);
-        levels_.push_back({shape, backend_.allocate("coarse matrix", count * COARSE_STENCIL * 4),
-                           backend_.allocate("coarse residual", count * 4),
-                           backend_.allocate("coarse guess", count * 4),
-                           backend_.allocate("coarse correction", count * 4)});
-        if (merged(bits) == bits) return;
+        levels.push_back({shape, backend_.allocate("coarse matrix", count * COARSE_STENCIL * 4),
+                          backend_.allocate("coarse residual", count * 4), backend_.allocate("coarse guess", count * 4),
+                          backend_.allocate("coarse correction", count * 4)});
+        if (merged(bits) == bits) break;
         bits = merged(bits);
     }
+    levels_ = std::move(levels);
 }
 
 void CoarseCorrection::prepare(Substep& s, Operators& operators, Buffer& u) {
@@ -86,7 +87,7 @@ void CoarseCorrection::solve(Substep& s, Buffer& residual, Buffer& u) {
 
 std::uint64_t CoarseCorrection::bytes(std::uint64_t particle_count) {
     const std::uint64_t cells = particle_count / 8;  // of the grid; a level has an eighth of the one below
-    return particle_count / COARSE_LEAST * COARSE_TABLE * 5 + cells / 7 * (COARSE_STENCIL + 2) * 4;
+    return particle_count * 5 + particle_count / COARSE_LEAST * COARSE_TABLE * 5 + cells / 7 * (COARSE_STENCIL + 3) * 4;
 }
 
 }  // namespace fontana
