@@ -44,69 +44,70 @@ constexpr float k_far = 1.0e18f;
 ::Real3 sum_of(const Real3& v) { return {sum_of(v.x), sum_of(v.y), sum_of(v.z)}; }
 
 // The candidates for neighbours of all the particles of one cell, in columns: read and turned round once, then tested
-// by each of them from the first-level cache. More than there is room for come in portions.
+// by each of them from the first-level cache. Where there are more than fit, as with all pairs, each particle reads
+// them for itself.
 class Candidates {
  public:
     Candidates(const StepConstants& c, const float4* position, const uint* cell_start)
         : c_(c), position_(position), cell_start_(cell_start) {}
 
-    // Calls visit(place in the columns) for every vector of candidates of a particle at x_i, until they are all seen.
+    // Calls visit(positions, their indices) for every vector of candidates of a particle at x_i. Lanes beyond the last
+    // candidate are far from everything and weigh nothing.
     template <typename Visit>
     inline __attribute__((always_inline)) void for_all(const float4& x_i, const Visit& visit) {
         start(c_.use_grid ? cell_of(c_, x_i) : CellCoordinates{0u, 0u, 0u});
-        for (;;) {
-            for (uint k = 0; k < count_; k += width) visit(k);
-            if (is_last_) return;
-            fill();
-        }
+        if (fits_)
+            for (uint k = 0; k < count_; k += width)
+                visit(Vec4{load(x_ + k), load(y_ + k), load(z_ + k), load(w_ + k)}, index_ + k);
+        else
+            for_ranges([&](uint first, uint end) {
+                alignas(64) uint index[width];
+                store_indices(first, index);
+                visit(blanked(load(position_ + first), end - first), index);
+            });
     }
-
-    Vec distance_squared(const float4& x_i, uint k) const {
-        const Vec dx = x_i.x - load(x_ + k), dy = x_i.y - load(y_ + k), dz = x_i.z - load(z_ + k);
-        return dx * dx + dy * dy + dz * dz;
-    }
-    Vec fourth(uint k) const { return load(w_ + k); }
-    const uint* index(uint k) const { return index_ + k; }
 
  private:
     // The cell before is often the cell still.
     void start(CellCoordinates cell) {
-        const bool is_here = cell.x == cell_.x && cell.y == cell_.y && cell.z == cell_.z;
-        if (is_here && is_whole_) return;
+        if (cell.x == cell_.x && cell.y == cell_.y && cell.z == cell_.z) return;
         cell_ = cell;
-        range_ = done_of_range_ = 0;
-        fill();
-        is_whole_ = is_last_;
-    }
-
-    void fill() {
-        const uint range_count = candidate_range_count(c_, cell_);
-        count_ = 0;
-        is_last_ = true;
-        for (; range_ < range_count; ++range_, done_of_range_ = 0) {
-            const Range range = candidate_range(c_, cell_, range_, cell_start_);
-            for (; range.begin + done_of_range_ < range.end; done_of_range_ += width) {
-                if (count_ + width > k_room) {
-                    is_last_ = false;
-                    break;
-                }
-                take(range.begin + done_of_range_, range.end);
-            }
-            if (!is_last_) break;
+        uint total = 0;
+        for (uint k = 0; k < candidate_range_count(c_, cell); ++k) {
+            const Range range = candidate_range(c_, cell, k, cell_start_);
+            total += range.end - range.begin;
         }
-        // What the last vector holds beyond the last candidate is no neighbour, nor a NaN, which times zero stays one.
-        store(x_ + count_, k_far - Vec{});
-        for (float* column : {y_, z_, w_}) store(column + count_, Vec{});
+        count_ = 0;
+        fits_ = total <= k_room;
+        if (!fits_) return;
+        for_ranges([&](uint first, uint end) { take(load(position_ + first), first, end - first); });
+        take(blanked(Vec4{}, 0), 0, 0);
     }
 
-    void take(uint first, uint end) {
-        const Vec4 rows = load(position_ + first);
+    // Calls visit(first, end of the range) for every vector of every range.
+    template <typename Visit>
+    inline __attribute__((always_inline)) void for_ranges(const Visit& visit) const {
+        const uint range_count = candidate_range_count(c_, cell_);
+        for (uint k = 0; k < range_count; ++k) {
+            const Range range = candidate_range(c_, cell_, k, cell_start_);
+            for (uint first = range.begin; first < range.end; first += width) visit(first, range.end);
+        }
+    }
+
+    static Vec4 blanked(const Vec4& rows, uint valid) {
+        if (valid >= width) return rows;
+        const uint within = (1u << valid) - 1u;
+        return {keep(within, rows.x) + keep(~within, k_far - Vec{}), keep(within, rows.y), keep(within, rows.z),
+                keep(within, rows.w)};
+    }
+
+    void take(const Vec4& rows, uint first, uint valid) {
         store(x_ + count_, rows.x);
         store(y_ + count_, rows.y);
         store(z_ + count_, rows.z);
         store(w_ + count_, rows.w);
         store_indices(first, index_ + count_);
-        count_ += end - first < width ? end - first : width;
+        count_ += valid < width ? valid : width;
     }
 
     static constexpr uint k_room = 512;
@@ -114,12 +115,17 @@ class Candidates {
     const float4* position_;
     const uint* cell_start_;
     CellCoordinates cell_{~0u, ~0u, ~0u};
-    uint range_ = 0, done_of_range_ = 0, count_ = 0;
-    bool is_last_ = true, is_whole_ = false;
+    uint count_ = 0;
+    bool fits_ = false;
     alignas(64) float x_[k_room + width];
     alignas(64) float y_[k_room + width], z_[k_room + width], w_[k_room + width];
     alignas(64) uint index_[k_room + width];
 };
+
+Vec distance_squared(const float4& a, const Vec4& b) {
+    const Vec dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+    return dx * dx + dy * dy + dz * dz;
+}
 
 void density(uint begin, uint end, const StepConstants& c, const float4* position, const float4* velocity,
              const uint* cell_start, float* density_out, float4* packed_position, float4* packed_velocity) {
@@ -127,10 +133,10 @@ void density(uint begin, uint end, const StepConstants& c, const float4* positio
     for (uint i = begin; i < end; ++i) {
         const float4 x_i = position[i];
         Vec sum{};
-        candidates.for_all(x_i, [&](uint k) {
+        candidates.for_all(x_i, [&](const Vec4& x_j, const uint*) {
             // At the support radius the kernel is zero.
-            const Vec r_squared = min_f(candidates.distance_squared(x_i, k), c.support_radius_squared);
-            sum += candidates.fourth(k) * poly6(r_squared, c.support_radius_squared);
+            const Vec r_squared = min_f(distance_squared(x_i, x_j), c.support_radius_squared);
+            sum += x_j.w * poly6(r_squared, c.support_radius_squared);
         });
         store_pressure_state(c, i, sum_of(sum), x_i, velocity[i], density_out, packed_position, packed_velocity);
     }
@@ -149,9 +155,9 @@ void fluid_force(uint begin, uint end, const StepConstants& c, const float4* pac
                 sum = add_force(sum, c, x_i, v_i, gather(packed_position, hit + k), gather(packed_velocity, hit + k));
             count = 0;
         };
-        candidates.for_all(x_i, [&](uint k) {
-            const uint hits = less_mask(candidates.distance_squared(x_i, k), c.support_radius_squared);
-            count += compress_store(hits, candidates.index(k), hit + count);
+        candidates.for_all(x_i, [&](const Vec4& x_j, const uint* index) {
+            const uint hits = less_mask(distance_squared(x_i, x_j), c.support_radius_squared);
+            count += compress_store(hits, index, hit + count);
             if (count > k_most_hits - width) flush();
         });
         flush();
@@ -168,10 +174,8 @@ void build_neighbor_list(uint begin, uint end, const StepConstants& c, const flo
         const float4 x_i = position[i];
         uint* const mine = list + std::size_t{i} * c.list_particle_stride;
         uint count = 0;
-        candidates.for_all(x_i, [&](uint k) {
-            const uint* const index = candidates.index(k);
-            uint hits =
-                less_mask(candidates.distance_squared(x_i, k), c.support_radius_squared) & ~equal_mask(index, i);
+        candidates.for_all(x_i, [&](const Vec4& x_j, const uint* index) {
+            uint hits = less_mask(distance_squared(x_i, x_j), c.support_radius_squared) & ~equal_mask(index, i);
             if (count + width <= c.list_capacity)
                 count += compress_store(hits, index, mine + count);
             else
