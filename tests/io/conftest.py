@@ -22,7 +22,7 @@ def compile_to(target: Path, compiler: str, *arguments) -> Path:
 def build_io_test(target: Path, *flags: str) -> Path:
     sources = [*sorted(HERE.glob("*.cpp")), *sorted((SOURCE / "io").glob("*.cpp"))]
     compiler = os.environ.get("CXX", "g++")
-    return compile_to(target, compiler, "-std=c++17", *CXX_WARNINGS, *flags, "-I", SOURCE, *sources)
+    return compile_to(target, compiler, "-std=c++17", *CXX_WARNINGS, *flags, "-I", SOURCE, "-I", HERE.parent, *sources)
 
 
 @pytest.fixture(scope="session")
