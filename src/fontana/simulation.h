@@ -71,7 +71,7 @@ class Simulation {
     const DeviceInfo& device() { return solver().backend().device(); }
     std::vector<ProfileRow> profile() { return solver().backend().profile(); }
     double copy_bandwidth(std::size_t bytes) { return measure_copy_bandwidth(solver().backend(), bytes); }
-    std::uint64_t memory_for(std::uint64_t particle_count) const;
+    std::uint64_t memory_for(std::uint64_t particle_count);
 
  private:
     // The solver on the backend the parameters ask for; moves the particles there if they are elsewhere.

@@ -1,5 +1,7 @@
 // The coarse matrices against what defines them: P^T K P, one column at a time, with the kernels of the solve itself
-// for K = G^T G and sums over cells for P. All kernels run as plain C++ here.
+// for K = G^T G and sums over cells for P. All kernels run as plain C++ here, and every particle is asked.
+#define COARSE_SAMPLE 1u
+
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -27,6 +29,7 @@ StepConstants constants_of(uint particle_count) {
     c.rest_density = 1000.0f;
     c.inverse_rest_density = 1e-3f;
     c.kernel_scale = 8.0f / (3.14159265f * k_support * k_support * k_support);
+    c.gradient_scale = -6.0f * c.kernel_scale / k_support * c.inverse_rest_density;
     c.inverse_cell_size = 1.0f / k_support;
     c.particle_count = particle_count;
     c.use_grid = 1u;
@@ -34,7 +37,7 @@ StepConstants constants_of(uint particle_count) {
     c.grid_shift_y = k_bits;
     c.grid_shift_z = 2u * k_bits;
     c.list_capacity = c.list_particle_stride = k_capacity;
-    c.list_neighbor_stride = c.list_padding = 1u;
+    c.list_neighbor_stride = 1u;
     return c;
 }
 
@@ -53,7 +56,7 @@ struct Fluid {
             for (int y = 0; y < 9; ++y)
                 for (int z = 0; z < 7; ++z) {
                     const auto at = [&](int k) { return (static_cast<float>(k) + 0.5f) * k_spacing + jitter(random); };
-                    const float4 p{at(x), at(y), at(z), k_spacing * k_spacing * k_spacing};
+                    const float4 p{at(x), at(y), at(z), 1000.0f * k_spacing * k_spacing * k_spacing};
                     cells[cell_key(c, cell_of(c, p))].push_back(p);
                 }
         cell_start.push_back(0u);
@@ -77,9 +80,8 @@ struct Fluid {
         for (uint i = 0; i < n; ++i)
             build_neighbor_list(i, c, position.data(), cell_start.data(), neighbor_count.data(), list.data());
         for (uint i = 0; i < n; ++i)
-            sum_neighborhood(i, c, position.data(), velocity.data(), neighbor_count.data(), list.data(),
-                             position.data(), nullptr, density.data(), factor.data(), wall_rate.data(), rate.data(),
-                             viscous.data());
+            sum_neighborhood(i, c, position.data(), velocity.data(), neighbor_count.data(), list.data(), nullptr,
+                             density.data(), factor.data(), wall_rate.data(), rate.data(), viscous.data());
         // A few particles take no part.
         for (uint i = 0; i < n; ++i) weight[i] = factor[i].w > 0.0f && i % 11u != 0u ? position[i].w : 0.0f;
     }

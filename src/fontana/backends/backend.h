@@ -38,6 +38,8 @@ struct DeviceInfo {
     bool is_gpu = false;
     bool available = false;
     std::string reason;  // why it is not, and what to do about it
+    // Particles in a row that share a list of neighbours (backends/cpu/wide_lists.h); 1: each has its own.
+    std::uint32_t list_group = 1;
 };
 
 // Memory on a device. Made by Backend::allocate and used only with the backend that made it.

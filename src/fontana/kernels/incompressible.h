@@ -13,114 +13,105 @@
 #include "walls.h"
 
 // G^T a from its sum over neighbours; s: S_i.
-FN float divergence_of(float4 s, float4 a, float sum) { return s.x * a.x + s.y * a.y + s.z * a.z - sum; }
+FN float divergence_of(const StepConstants c, float4 s, float4 a, float sum) {
+    return s.x * a.x + s.y * a.y + s.z * a.z - c.gradient_scale * sum;
+}
 
-// The sums over neighbours become density and factor.
-FN void store_density(const StepConstants c, uint i, float volume, float relative, Real3 s, float squares,
-                      WallTerm walls, GLOBAL float* RESTRICT density_out, GLOBAL float4* RESTRICT factor,
-                      GLOBAL float* RESTRICT wall_rate) {
-    const float x = s.x + walls.gradient_x, y = s.y + walls.gradient_y, z = s.z + walls.gradient_z;
-    const float diagonal = x * x + y * y + z * z + volume * squares;
+// S_i and 1 / D_i.
+FN float4 factor_of(const StepConstants c, float mass, Real3 gradient, float squares, WallTerm walls) {
+    const float scale = c.gradient_scale;
+    const float x = scale * gradient.x + walls.gradient_x, y = scale * gradient.y + walls.gradient_y,
+                z = scale * gradient.z + walls.gradient_z;
+    const float diagonal = x * x + y * y + z * z + (mass * scale) * (scale * squares);
     // Next to nobody the system is singular; and a particle pinched between surfaces has nowhere to go, so that no
     // pressure would ever be enough. Either feels none.
     const bool is_free = diagonal * c.support_radius_squared > 4.0e-4f && walls.share < 0.9f;
-    const float inverse = is_free ? 1.0f / diagonal : 0.0f;
-    density_out[i] = relative * c.rest_density;
-    factor[i] = MAKE_FLOAT4(x, y, z, inverse);
-    wall_rate[i] = walls.rate;
+    return MAKE_FLOAT4(x, y, z, is_free ? 1.0f / diagonal : 0.0f);
 }
 
 // Viscosity as Monaghan (2005) writes the Laplacian, 2 (dimension + 2) = 10:
 //   a_i = 10 nu sum_j V_j (v_ij . x_ij) / (r^2 + 0.01 H^2) grad W_ij.
-FN void store_viscosity(const StepConstants c, uint i, Real3 sum, GLOBAL float4* RESTRICT viscous) {
-    const float scale = 10.0f * c.viscosity * c.inverse_rest_density;
-    viscous[i] = MAKE_FLOAT4(scale * sum.x, scale * sum.y, scale * sum.z, 0.0f);
+FN float4 viscosity_of(const StepConstants c, Real3 shear) {
+    const float scale = 10.0f * c.viscosity * c.inverse_rest_density * c.gradient_scale;
+    return MAKE_FLOAT4(scale * shear.x, scale * shear.y, scale * shear.z, 0.0f);
 }
 
-// All that a substep has to know before pressure acts, in one visit to every neighbour. `volume_position` = x, y, z, V.
-// Out: the density; `factor` = S, 1 / D (0 where a particle feels no pressure); `wall_rate`; `rate`, that of the
-// relative density under the present velocities (1/s); and the acceleration by viscosity.
+// All that a substep has to know before pressure acts, in one visit to every neighbour. `position`: x, y, z, m. Out:
+// the density; `factor` = S, 1 / D (0 where a particle feels no pressure); `wall_rate`; `rate`, that of the relative
+// density under the present velocities (1/s); and the acceleration by viscosity.
 KERNEL void sum_neighborhood(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
                              GLOBAL const float4* RESTRICT velocity, GLOBAL const uint* RESTRICT neighbor_count,
-                             GLOBAL const uint* RESTRICT list, GLOBAL const float4* RESTRICT volume_position,
-                             GLOBAL const ColliderConstants* RESTRICT collider, GLOBAL float* RESTRICT density_out,
-                             GLOBAL float4* RESTRICT factor, GLOBAL float* RESTRICT wall_rate,
-                             GLOBAL float* RESTRICT rate, GLOBAL float4* RESTRICT viscous) {
+                             GLOBAL const uint* RESTRICT list, GLOBAL const ColliderConstants* RESTRICT collider,
+                             GLOBAL float* RESTRICT density_out, GLOBAL float4* RESTRICT factor,
+                             GLOBAL float* RESTRICT wall_rate, GLOBAL float* RESTRICT rate,
+                             GLOBAL float4* RESTRICT viscous) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
-    const float4 x_i = volume_position[i], v_i = velocity[i];
-    const WallTerm walls = walls_at(c, collider, position[i]);
-    float relative = x_i.w * kernel_value(c, 0.0f) + walls.share, squares = 0.0f, approach = 0.0f;
-    Real3 s = zero_vector(), shear = zero_vector();
+    const float4 x_i = position[i], v_i = velocity[i];
+    NeighborhoodSums sums = no_neighborhood();
+    sums.density = x_i.w * kernel_value(c, 0.0f);
     const uint count = list_length(c, neighbor_count[i]);
     for (uint k = 0u; k < count; ++k) {
         const uint j = neighbor(c, list, i, k);
-        const float4 x_j = volume_position[j], v_j = velocity[j];
-        const Pair pair = pair_of(x_i, x_j);
-        relative += x_j.w * kernel_value(c, pair.r);
-        s = add_gradient(s, c, x_j.w, pair);
-        squares += gradient_squared_term(c, x_j.w, pair);
-        approach += divergence_term(c, x_j.w, pair, v_j);
-        shear = add_gradient(shear, c, viscosity_weight(c, x_j.w, pair, v_i, v_j), pair);
+        const float4 x_j = position[j];
+        sums = add_neighbor(sums, c, x_j.w, pair_of(x_i, x_j), v_i, velocity[j]);
     }
-    store_density(c, i, x_i.w, relative, s, squares, walls, density_out, factor, wall_rate);
-    rate[i] = divergence_of(factor[i], v_i, approach) - walls.rate;
-    store_viscosity(c, i, shear, viscous);
-}
-
-KERNEL void pack_volume(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
-                        GLOBAL float4* RESTRICT volume_position) {
-    const uint i = THREAD_INDEX;
-    if (i >= c.particle_count) return;
-    const float4 x = position[i];
-    volume_position[i] = MAKE_FLOAT4(x.x, x.y, x.z, x.w * c.inverse_rest_density);
+    const WallTerm walls = walls_at(c, collider, x_i);
+    const float4 s = factor_of(c, x_i.w, sums.gradient, sums.squares, walls);
+    density_out[i] = sums.density + c.rest_density * walls.share;
+    factor[i] = s;
+    wall_rate[i] = walls.rate;
+    rate[i] = divergence_of(c, s, v_i, sums.flow) - walls.rate;
+    viscous[i] = viscosity_of(c, sums.shear);
 }
 
 // G^T applied to `field`, without the walls' own motion.
 FN float divergence_at(const StepConstants c, uint i, GLOBAL const uint* RESTRICT neighbor_count,
-                       GLOBAL const uint* RESTRICT list, GLOBAL const float4* RESTRICT volume_position,
+                       GLOBAL const uint* RESTRICT list, GLOBAL const float4* RESTRICT position,
                        GLOBAL const float4* RESTRICT factor, GLOBAL const float4* RESTRICT field) {
-    const float4 x_i = volume_position[i];
+    const float4 x_i = position[i];
     float sum = 0.0f;
     const uint count = list_length(c, neighbor_count[i]);
     for (uint k = 0u; k < count; ++k) {
         const uint j = neighbor(c, list, i, k);
-        const float4 x_j = volume_position[j];
+        const float4 x_j = position[j];
         sum += divergence_term(c, x_j.w, pair_of(x_i, x_j), field[j]);
     }
-    return divergence_of(factor[i], field[i], sum);
+    return divergence_of(c, factor[i], field[i], sum);
 }
 
 // Rate of the relative density under the velocities, 1/s: what the solves start from.
 KERNEL void density_rate(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT velocity,
                          GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
-                         GLOBAL const float4* RESTRICT volume_position, GLOBAL const float4* RESTRICT factor,
+                         GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT factor,
                          GLOBAL const float* RESTRICT wall_rate, GLOBAL float* RESTRICT rate) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
-    rate[i] = divergence_at(c, i, neighbor_count, list, volume_position, factor, velocity) - wall_rate[i];
+    rate[i] = divergence_at(c, i, neighbor_count, list, position, factor, velocity) - wall_rate[i];
 }
 
-FN void store_gradient(uint i, float u_i, float4 s, Real3 sum, GLOBAL float4* RESTRICT gradient) {
-    gradient[i] = MAKE_FLOAT4(u_i * s.x + sum.x, u_i * s.y + sum.y, u_i * s.z + sum.z, 0.0f);
+// G u from its sum over neighbours; s: S_i.
+FN float4 gradient_of(const StepConstants c, float u_i, float4 s, Real3 sum) {
+    const float scale = c.gradient_scale;
+    return MAKE_FLOAT4(u_i * s.x + scale * sum.x, u_i * s.y + scale * sum.y, u_i * s.z + scale * sum.z, 0.0f);
 }
 
 // G u, into `gradient`.
 KERNEL void pressure_gradient(THREAD_ARG const StepConstants c, GLOBAL const float* RESTRICT u,
                               GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
-                              GLOBAL const float4* RESTRICT volume_position, GLOBAL const float4* RESTRICT factor,
+                              GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT factor,
                               GLOBAL float4* RESTRICT gradient) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
-    const float4 x_i = volume_position[i];
+    const float4 x_i = position[i];
     Real3 sum = zero_vector();
     const uint count = list_length(c, neighbor_count[i]);
     for (uint k = 0u; k < count; ++k) {
         const uint j = neighbor(c, list, i, k);
-        const float4 x_j = volume_position[j];
+        const float4 x_j = position[j];
         sum = add_gradient(sum, c, x_j.w * u[j], pair_of(x_i, x_j));
     }
-    store_gradient(i, u[i], factor[i], sum, gradient);
+    gradient[i] = gradient_of(c, u[i], factor[i], sum);
 }
 
 // v -= dt G u, with G u in `gradient`.
@@ -146,6 +137,7 @@ KERNEL void predict_velocity(THREAD_ARG const StepConstants c, GLOBAL const floa
 // `friction` of the sliding velocity is lost, whatever the length of the step; a drag that grows with the square of the
 // velocity, as that of a rough wall does. A hit (collide) takes its own share beside.
 FN Motion slide(const StepConstants c, ColliderConstants s, Motion m) {
+    if (s.friction == 0.0f) return m;
     const float spacing = 0.5f * c.support_radius;
     const Contact contact = surface_distance(s, m);
     if (contact.depth < -0.5f * spacing || contact.depth > s.thickness) return m;

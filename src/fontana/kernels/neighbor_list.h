@@ -1,4 +1,5 @@
-// Lists of neighbours, built once a substep and walked by every pass after that.
+// Lists of neighbours, built once a substep and walked by every pass after that. These are for loops that take one
+// particle at a time; loops over several share a list between them (backends/cpu/wide_lists.h).
 #ifndef FONTANA_NEIGHBOR_LIST_H
 #define FONTANA_NEIGHBOR_LIST_H
 
@@ -13,11 +14,8 @@ FN uint list_length(const StepConstants c, uint neighbor_count) {
     return neighbor_count < c.list_capacity ? neighbor_count : c.list_capacity;
 }
 
-// Fills a list up to a multiple of the padding with the particle itself, which adds nothing to a gradient.
-FN void pad_list(const StepConstants c, GLOBAL uint* RESTRICT list, uint i, uint count) {
-    for (; count < c.list_capacity && count % c.list_padding != 0u; ++count)
-        list[i * c.list_particle_stride + count * c.list_neighbor_stride] = i;
-}
+// Where, in the array of counts, the length of all the shared lists together is: after two words a list.
+FN uint shared_list_total(uint particle_count, uint group) { return (particle_count + group - 1u) / group * 2u; }
 
 // Everyone within the support radius but the particle itself, in the order of the cells.
 KERNEL void build_neighbor_list(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
@@ -41,7 +39,26 @@ KERNEL void build_neighbor_list(THREAD_ARG const StepConstants c, GLOBAL const f
         }
     }
     neighbor_count[i] = count;
-    pad_list(c, list, i, count);
+}
+
+// How many they are, for hosts that ask.
+KERNEL void count_neighbors(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
+                            GLOBAL const uint* RESTRICT cell_start, GLOBAL uint* RESTRICT neighbor_count) {
+    const uint i = THREAD_INDEX;
+    if (i >= c.particle_count) return;
+    const float4 x_i = position[i];
+    const CellCoordinates cell = cell_of(c, x_i);
+    const uint range_count = candidate_range_count(c, cell);
+    uint count = 0u;
+    for (uint k = 0u; k < range_count; ++k) {
+        const Range range = candidate_range(c, cell, k, cell_start);
+        for (uint j = range.begin; j < range.end; ++j) {
+            const float4 x_j = position[j];
+            const float dx = x_i.x - x_j.x, dy = x_i.y - x_j.y, dz = x_i.z - x_j.z;
+            if (dx * dx + dy * dy + dz * dz < c.support_radius_squared && j != i) ++count;
+        }
+    }
+    neighbor_count[i] = count;
 }
 
 #endif

@@ -41,27 +41,30 @@ KERNEL void divergence_step(THREAD_ARG const StepConstants c, const float relaxa
 // r = target - K u from G u, 1/s^2; 0 where no pressure acts.
 KERNEL void pressure_residual(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT gradient,
                               GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
-                              GLOBAL const float4* RESTRICT volume_position, GLOBAL const float4* RESTRICT factor,
+                              GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT factor,
                               GLOBAL const float* RESTRICT target, GLOBAL float* RESTRICT residual) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
-    const float k_u = divergence_at(c, i, neighbor_count, list, volume_position, factor, gradient);
+    const float k_u = divergence_at(c, i, neighbor_count, list, position, factor, gradient);
     residual[i] = factor[i].w > 0.0f ? target[i] - k_u : 0.0f;
 }
 
-// The relaxed step f = max(0, u + omega (r / D + z)) - u, with z the coarse correction (coarse.h) or nothing.
+// f = max(0, u + omega (r / D + z)) - u, with z the coarse correction (coarse.h) or nothing.
+FN float relaxed_step(float relaxation, float inverse_diagonal, float r, float z, float u) {
+    return inverse_diagonal > 0.0f ? max_f(0.0f, u + relaxation * (inverse_diagonal * r + z)) - u : -u;
+}
+
 KERNEL void relax(THREAD_ARG const StepConstants c, const float relaxation, const uint with_coarse,
-                  const CoarseLevel level, GLOBAL const float4* RESTRICT volume_position,
+                  const CoarseLevel level, GLOBAL const float4* RESTRICT position,
                   GLOBAL const uint* RESTRICT cell_start, GLOBAL const float4* RESTRICT factor,
                   GLOBAL const float* RESTRICT weight, GLOBAL const float* RESTRICT residual,
                   GLOBAL const float* RESTRICT z, GLOBAL const float* RESTRICT u, GLOBAL float* RESTRICT step) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
-    const float u_i = u[i], inverse_diagonal = factor[i].w, r = residual[i];
-    float correction = inverse_diagonal * r;
-    if (with_coarse && is_pressed(weight[i], r, u_i))
-        correction += coarse_correction(c, level, volume_position[i], cell_start, z);
-    step[i] = inverse_diagonal > 0.0f ? max_f(0.0f, u_i + relaxation * correction) - u_i : -u_i;
+    float z_i = 0.0f;
+    if (with_coarse && is_pressed(weight[i], residual[i], u[i]))
+        z_i = coarse_correction(c, level, position[i], cell_start, z);
+    step[i] = relaxed_step(relaxation, factor[i].w, residual[i], z_i, u[i]);
 }
 
 // Per lane: the residual and the inner products of the last two differences of steps, weighted by D; `step` is this

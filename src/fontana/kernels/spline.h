@@ -15,13 +15,14 @@ FN REAL kernel_value(const StepConstants c, REAL r) {
     return c.kernel_scale * (2.0f * a * a * a - 8.0f * b * b * b);
 }
 
-// The factor on x_ij of grad W: W'(r) / r.
+// The factor on x_ij of grad W, W'(r) / r, without its constant (c.gradient_scale), which the callers take out of their
+// sums. Cubic: -48 / (pi H^4) times ((1-q)^2 - (1-2q)^2) / r, the second power clamped at 0 as the first. Wendland:
+// -210 / (pi H^5) times (1-q)^3.
 FN REAL kernel_gradient(const StepConstants c, REAL r, REAL inverse_r) {
     const REAL q = r * c.inverse_support_radius, a = max_f(1.0f - q, 0.0f);
-    const float scale = c.kernel_scale * c.inverse_support_radius;
-    if (c.use_wendland) return (-20.0f * scale * c.inverse_support_radius) * (a * a * a);
-    const REAL b = max_f(0.5f - q, 0.0f);
-    return scale * (24.0f * b * b - 6.0f * a * a) * inverse_r;
+    if (c.use_wendland) return a * a * a;
+    const REAL b = max_f(1.0f - 2.0f * q, 0.0f);
+    return (a * a - b * b) * inverse_r;
 }
 
 // W seen from a plane: the integral of W over the plane at distance z H, times H; its derivative by z; and the integral

@@ -18,6 +18,7 @@ typedef struct StepConstants {
     float viscosity_laplacian_scale;        // 45 / (pi H^6)
     float poly6_gradient_scale;             // 945 / (32 pi H^9)
     float kernel_scale;                     // 1/m^3, of the spline (spline.h)
+    float gradient_scale;                   // of its gradient over the rest density, m^3/kg times 1/m^4 or 1/m^5
     float inverse_support_radius;           // 1/m
     float inverse_rest_density;             // m^3/kg
     float inverse_dt;                       // 1/s
@@ -39,10 +40,9 @@ typedef struct StepConstants {
     uint grid_mask_x, grid_mask_y, grid_mask_z;  // cells along an axis, less one; counts are powers of two
     uint grid_shift_y, grid_shift_z;             // where y and z stand in a cell's key
     uint use_wendland;                           // instead of the cubic spline
-    uint list_capacity;                          // neighbours a particle's list has room for
+    uint list_capacity;                          // neighbours that each list has room for; if shared, all together
     uint list_particle_stride;  // the k-th neighbour of particle i is at i * particle stride + k * neighbor stride
     uint list_neighbor_stride;
-    uint list_padding;  // lists are filled up to a multiple of this
 } StepConstants;
 
 // An implicit surface, as the kernels see it: III.7 of the thesis. Units as in fontana_collider.

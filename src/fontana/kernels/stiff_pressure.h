@@ -15,22 +15,23 @@ KERNEL void tait_pressure(THREAD_ARG const StepConstants c, GLOBAL const float* 
     u[i] = max_f(c.minimum_pressure, value);
 }
 
-// Where the particle would be at the end of the substep under `velocity` and the pressure so far; w: V.
-KERNEL void predict_position(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT volume_position,
+// Where the particle would be at the end of the substep under `velocity` and the pressure so far; w: m.
+KERNEL void predict_position(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
                              GLOBAL const float4* RESTRICT velocity, GLOBAL const float4* RESTRICT gradient,
                              GLOBAL float4* RESTRICT predicted) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
-    const float4 x = volume_position[i], v = velocity[i], g = gradient[i];
+    const float4 x = position[i], v = velocity[i], g = gradient[i];
     predicted[i] = MAKE_FLOAT4(x.x + c.dt * (v.x - c.dt * g.x), x.y + c.dt * (v.y - c.dt * g.y),
                                x.z + c.dt * (v.z - c.dt * g.z), x.w);
 }
 
 // delta is that of a full neighbourhood at rest; where particles are crowded it would overshoot, and half of 1 / D,
 // what relaxed Jacobi would take, holds it.
-FN void store_correction(const StepConstants c, uint i, float delta, float relative,
+FN void store_correction(const StepConstants c, uint i, float delta, float density, float wall_share,
                          GLOBAL const float4* RESTRICT factor, GLOBAL float* RESTRICT u,
                          GLOBAL float* RESTRICT residual) {
+    const float relative = density * c.inverse_rest_density + wall_share;
     const float gain = min_f(delta, 0.5f * factor[i].w) * c.inverse_dt * c.inverse_dt;
     u[i] = max_f(0.0f, u[i] + gain * (relative - 1.0f));
     residual[i] = max_f(0.0f, relative - 1.0f);
@@ -47,13 +48,13 @@ KERNEL void correct_pressure(THREAD_ARG const StepConstants c, const float delta
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
     const float4 x_i = predicted[i];
-    float relative = x_i.w * kernel_value(c, 0.0f) + walls_at(c, collider, x_i).share;
+    float density = x_i.w * kernel_value(c, 0.0f);
     const uint count = list_length(c, neighbor_count[i]);
     for (uint k = 0u; k < count; ++k) {
         const float4 x_j = predicted[neighbor(c, list, i, k)];
-        relative += x_j.w * kernel_value(c, pair_of(x_i, x_j).r);
+        density += x_j.w * kernel_value(c, pair_of(x_i, x_j).r);
     }
-    store_correction(c, i, delta, relative, factor, u, residual);
+    store_correction(c, i, delta, density, walls_at(c, collider, x_i).share, factor, u, residual);
 }
 
 #endif

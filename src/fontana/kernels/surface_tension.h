@@ -6,10 +6,11 @@
 #include "smoothing.h"
 
 // With the colour field c = sum_j V_j W_poly6 and its gradient n: f = - sigma lap(c) n / |n| (eq. 19), where |n| shows
-// that the particle is at a surface. Adds f / density_i to the acceleration.
-KERNEL void surface_tension(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT packed_position,
-                            GLOBAL const float* RESTRICT density_in, GLOBAL const uint* RESTRICT cell_start,
-                            GLOBAL float4* RESTRICT acceleration) {
+// that the particle is at a surface. Adds f / density_i to the acceleration. packed_position: x, y, z and, times
+// `volume_scale`, V.
+KERNEL void surface_tension(THREAD_ARG const StepConstants c, const float volume_scale,
+                            GLOBAL const float4* RESTRICT packed_position, GLOBAL const float* RESTRICT density_in,
+                            GLOBAL const uint* RESTRICT cell_start, GLOBAL float4* RESTRICT acceleration) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
     const float4 x_i = packed_position[i];
@@ -31,6 +32,10 @@ KERNEL void surface_tension(THREAD_ARG const StepConstants c, GLOBAL const float
             }
         }
     }
+    normal_x *= volume_scale;
+    normal_y *= volume_scale;
+    normal_z *= volume_scale;
+    laplacian *= volume_scale;
     const float length = SQRT(normal_x * normal_x + normal_y * normal_y + normal_z * normal_z);
     if (c.poly6_gradient_scale * length <= c.minimum_normal) return;
     const float s = -c.surface_tension * c.poly6_gradient_scale * laplacian / (length * density_in[i]);

@@ -109,6 +109,7 @@ FN WallTerm walls_at(const StepConstants c, GLOBAL const ColliderConstants* REST
     sum.share = sum.gradient_x = sum.gradient_y = sum.gradient_z = sum.rate = 0.0f;
     for (uint k = 0u; k < c.collider_count; ++k) {
         const WallTerm term = wall_of(c, collider[k], m);
+        if (term.share == 0.0f) continue;
         const float free = 1.0f - term.share, open = 1.0f - sum.share;
         sum.gradient_x = sum.gradient_x * free + term.gradient_x * open;
         sum.gradient_y = sum.gradient_y * free + term.gradient_y * open;

@@ -54,10 +54,10 @@ void CoarseCorrection::prepare(Substep& s, Operators& operators, Buffer& u) {
     const auto count = static_cast<std::uint32_t>(s.particles.count());
     const auto cell_count = static_cast<std::uint32_t>(s.neighborhood.shape().cell_count());
     backend_.launch(Kernel::coarse_weights, count,
-                    {count, operators.volume_position(), operators.factor(), operators.rate(), u, *weight_});
+                    {count, s.particles.position(), operators.factor(), operators.rate(), u, *weight_});
     backend_.launch(Kernel::coarse_products, cell_count,
-                    {s.constants, cell_count, s.neighborhood.cell_start(), operators.volume_position(),
-                     operators.factor(), *weight_, operators.list().count(), operators.list().list(), *table_});
+                    {s.constants, cell_count, s.neighborhood.cell_start(), s.particles.position(), operators.factor(),
+                     *weight_, operators.list().count(), operators.list().list(), *table_});
     backend_.launch(Kernel::coarse_matrix, coarse_count(finest()),
                     {s.constants, finest(), s.neighborhood.cell_start(), *table_, *levels_.front().stencil});
     for (std::size_t k = 1; k < levels_.size(); ++k)

@@ -17,11 +17,18 @@ double spline_scale(const Parameters& p, double support) {
     return (p.fluid_kernel == "wendland" ? 21.0 / 2.0 : 8.0) / (k_pi * support * support * support);
 }
 
+// What kernel_gradient of spline.h leaves out.
+double spline_gradient_scale(const Parameters& p, double support) {
+    const double scale = spline_scale(p, support);
+    return p.fluid_kernel == "wendland" ? -20.0 * scale / (support * support) : -6.0 * scale / support;
+}
+
 // What the functions of spline.h read.
 StepConstants spline_constants(const Parameters& p) {
     const double support = support_radius(p);
     StepConstants c{};
     c.kernel_scale = static_cast<float>(spline_scale(p, support));
+    c.gradient_scale = static_cast<float>(spline_gradient_scale(p, support) / p.fluid_rest_density);
     c.use_wendland = p.fluid_kernel == "wendland" ? 1u : 0u;
     c.support_radius = static_cast<float>(support);
     c.inverse_support_radius = 1.0f / c.support_radius;
@@ -105,11 +112,11 @@ double density_error_tolerance(const Parameters& p) {
 double pcisph_delta(const Parameters& p) {
     const StepConstants c = spline_constants(p);
     const double support = support_radius(p), spacing = std::max(p.fluid_particle_spacing, support / k_most_reach);
-    const double volume = particle_mass(p) / p.fluid_rest_density;
+    const double volume = particle_mass(p) / p.fluid_rest_density, scale = spline_gradient_scale(p, support);
     double squares = 0.0;  // on a lattice the gradients themselves add up to nothing
     for_lattice(spacing, support, [&](double r) {
         const double gradient =
-            r * static_cast<double>(kernel_gradient(c, static_cast<float>(r), static_cast<float>(1.0 / r)));
+            r * scale * static_cast<double>(kernel_gradient(c, static_cast<float>(r), static_cast<float>(1.0 / r)));
         squares += volume * std::pow(spacing, 3) * gradient * gradient;
     });
     return 0.5 / squares;

@@ -55,11 +55,11 @@ void Substep::choose_time_step() {
     constants.inverse_dt = 1.0f / constants.dt;
 }
 
-void Substep::add_surface_tension(Buffer& packed_position) {
+void Substep::add_surface_tension(Buffer& packed_position, float volume_scale) {
     if (constants.surface_tension > 0.0f)
-        backend.launch(
-            Kernel::surface_tension, particles.count(),
-            {constants, packed_position, particles.density(), neighborhood.cell_start(), particles.acceleration()});
+        backend.launch(Kernel::surface_tension, particles.count(),
+                       {constants, volume_scale, packed_position, particles.density(), neighborhood.cell_start(),
+                        particles.acceleration()});
 }
 
 void Substep::add_external_force() {
@@ -76,11 +76,11 @@ std::unique_ptr<Method> make_method(const std::string& name, Backend& backend) {
     fail(FONTANA_BAD_INPUT, "no method '" + name + "'");
 }
 
-std::uint64_t method_bytes(const std::string& name, std::uint64_t particle_count) {
+std::uint64_t method_bytes(const std::string& name, std::uint64_t particle_count, std::uint32_t list_group) {
     if (name == "mueller") return 0;
     const std::uint64_t solve = name == "dfsph" ? 7 * 4 : name == "pcisph" ? 16 + 4 : 0;
     const std::uint64_t coarse = name == "dfsph" ? CoarseCorrection::bytes(particle_count) : 0;
-    return Operators::bytes(particle_count) + solve * (particle_count + particle_count / 4) + coarse;
+    return Operators::bytes(particle_count, list_group) + solve * (particle_count + particle_count / 4) + coarse;
 }
 
 }  // namespace fontana

@@ -52,8 +52,8 @@ struct Substep {
     void place_colliders();
     // From what the particles do now (and did last, for the acceleration); sets constants.dt and the report.
     void choose_time_step();
-    // Each adds to the acceleration.
-    void add_surface_tension(Buffer& packed_position);
+    // Each adds to the acceleration. packed_position: x, y, z and the volume over `volume_scale`.
+    void add_surface_tension(Buffer& packed_position, float volume_scale);
     void add_external_force();
 };
 
@@ -66,7 +66,7 @@ class Method {
 
 // name: a choice of fluid.method.
 std::unique_ptr<Method> make_method(const std::string& name, Backend& backend);
-// Bytes on the device beside what every method needs.
-std::uint64_t method_bytes(const std::string& name, std::uint64_t particle_count);
+// Bytes on a device beside what every method needs; list_group: of its DeviceInfo.
+std::uint64_t method_bytes(const std::string& name, std::uint64_t particle_count, std::uint32_t list_group);
 
 }  // namespace fontana

@@ -100,11 +100,11 @@ class Dfsph : public Method {
         operators_.compute_gradient(s, u(k));
         backend_.launch(Kernel::pressure_residual, count,
                         {s.constants, operators_.gradient(), operators_.list().count(), operators_.list().list(),
-                         operators_.volume_position(), operators_.factor(), operators_.rate(), *residual_});
+                         s.particles.position(), operators_.factor(), operators_.rate(), *residual_});
         if (with_coarse_) coarse_.solve(s, *residual_, u(k));
         backend_.launch(Kernel::relax, count,
                         {s.constants, relaxation, std::uint32_t{with_coarse_},
-                         with_coarse_ ? coarse_.finest() : CoarseLevel{}, operators_.volume_position(),
+                         with_coarse_ ? coarse_.finest() : CoarseLevel{}, s.particles.position(),
                          s.neighborhood.cell_start(), operators_.factor(), with_coarse_ ? coarse_.weight() : *residual_,
                          *residual_, with_coarse_ ? coarse_.correction() : *residual_, u(k), step(k)});
         backend_.launch(Kernel::anderson_sums, lanes,

@@ -10,7 +10,7 @@ class Mueller : public Method {
     void advance(Substep& s) override {
         compute_density(s);  // eqs. 2.8, 2.11
         compute_forces(s);   // eqs. 2.10, 2.13
-        s.add_surface_tension(s.particles.packed_position());
+        s.add_surface_tension(s.particles.packed_position(), 1.0f);
         s.add_external_force();  // eq. 2.17
         s.choose_time_step();
         s.place_colliders();

@@ -39,9 +39,9 @@ class Pcisph : public Method {
         s.report.converged = false;
         for (std::uint32_t k = 1; k <= static_cast<std::uint32_t>(s.parameters.solver_max_iterations); ++k) {
             operators_.compute_gradient(s, operators_.u());
-            backend_.launch(Kernel::predict_position, count,
-                            {s.constants, operators_.volume_position(), s.particles.velocity(), operators_.gradient(),
-                             *predicted_});
+            backend_.launch(
+                Kernel::predict_position, count,
+                {s.constants, s.particles.position(), s.particles.velocity(), operators_.gradient(), *predicted_});
             backend_.launch(Kernel::correct_pressure, count,
                             {s.constants, delta, *predicted_, operators_.list().count(), operators_.list().list(),
                              s.colliders.buffer(), operators_.factor(), operators_.u(), *residual_});

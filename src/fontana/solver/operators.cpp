@@ -5,7 +5,6 @@ namespace fontana {
 void Operators::reserve(std::size_t particle_count) {
     if (u_ && reserved_ >= particle_count) return;
     const std::size_t roomy = particle_count + particle_count / 4;
-    volume_position_ = backend_.allocate("volume position", roomy * 16);
     factor_ = backend_.allocate("factor", roomy * 16);
     wall_rate_ = backend_.allocate("wall rate", roomy * 4);
     rate_ = backend_.allocate("rate", roomy * 4);
@@ -14,8 +13,8 @@ void Operators::reserve(std::size_t particle_count) {
     reserved_ = roomy;  // only now: memory may run out halfway
 }
 
-std::uint64_t Operators::bytes(std::uint64_t particle_count) {
-    return (particle_count + particle_count / 4) * (3 * 16 + 3 * 4) + NeighborList::bytes(particle_count);
+std::uint64_t Operators::bytes(std::uint64_t particle_count, std::uint32_t list_group) {
+    return (particle_count + particle_count / 4) * (2 * 16 + 3 * 4) + NeighborList::bytes(particle_count, list_group);
 }
 
 void Operators::begin(Substep& s) {
@@ -23,22 +22,20 @@ void Operators::begin(Substep& s) {
     reserve(count);
     list_.build(s.particles, s.neighborhood, s.constants);
     s.place_walls();
-    backend_.launch(Kernel::pack_volume, count, {s.constants, s.particles.position(), *volume_position_});
-    backend_.launch(
-        Kernel::sum_neighborhood, count,
-        {s.constants, s.particles.position(), s.particles.velocity(), list_.count(), list_.list(), *volume_position_,
-         s.colliders.buffer(), s.particles.density(), *factor_, *wall_rate_, *rate_, *gradient_});
+    backend_.launch(Kernel::sum_neighborhood, count,
+                    {s.constants, s.particles.position(), s.particles.velocity(), list_.count(), list_.list(),
+                     s.colliders.buffer(), s.particles.density(), *factor_, *wall_rate_, *rate_, *gradient_});
 }
 
 void Operators::compute_rate(Substep& s) {
     backend_.launch(Kernel::density_rate, s.particles.count(),
-                    {s.constants, s.particles.velocity(), list_.count(), list_.list(), *volume_position_, *factor_,
+                    {s.constants, s.particles.velocity(), list_.count(), list_.list(), s.particles.position(), *factor_,
                      *wall_rate_, *rate_});
 }
 
 void Operators::compute_gradient(Substep& s, Buffer& u) {
     backend_.launch(Kernel::pressure_gradient, s.particles.count(),
-                    {s.constants, u, list_.count(), list_.list(), *volume_position_, *factor_, *gradient_});
+                    {s.constants, u, list_.count(), list_.list(), s.particles.position(), *factor_, *gradient_});
 }
 
 void Operators::clear_u(Substep& s) {
@@ -51,7 +48,7 @@ void Operators::push(Substep& s) {
 
 void Operators::add_forces(Substep& s) {
     backend_.copy(*gradient_, s.particles.acceleration(), s.particles.count() * 16);
-    s.add_surface_tension(*volume_position_);
+    s.add_surface_tension(s.particles.position(), s.constants.inverse_rest_density);
     s.add_external_force();
 }
 

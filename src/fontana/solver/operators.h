@@ -34,13 +34,12 @@ class Operators {
     void finish(Substep& substep, Buffer& u);
 
     NeighborList& list() { return list_; }
-    Buffer& volume_position() { return *volume_position_; }
     Buffer& factor() { return *factor_; }
     Buffer& rate() { return *rate_; }
     Buffer& gradient() { return *gradient_; }
     Buffer& u() { return *u_; }
 
-    static std::uint64_t bytes(std::uint64_t particle_count);
+    static std::uint64_t bytes(std::uint64_t particle_count, std::uint32_t list_group);
 
  private:
     void reserve(std::size_t particle_count);
@@ -48,7 +47,7 @@ class Operators {
     Backend& backend_;
     NeighborList list_;
     std::size_t reserved_ = 0;
-    std::unique_ptr<Buffer> volume_position_, factor_, wall_rate_, rate_, gradient_, u_;
+    std::unique_ptr<Buffer> factor_, wall_rate_, rate_, gradient_, u_;
 };
 
 }  // namespace fontana

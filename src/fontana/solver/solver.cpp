@@ -42,10 +42,7 @@ void Solver::count_neighbors(const Parameters& parameters, std::uint32_t* out) {
     search.update(copy, constants);
     const auto found = backend_->allocate("neighbour count", count * 4);
     const auto by_id = backend_->allocate("neighbour count by id", count * 4);
-    constants.list_capacity = 0;  // lists without room still count
-    const auto no_list = backend_->allocate("neighbour list", 0);
-    backend_->launch(Kernel::build_neighbor_list, count,
-                     {constants, copy.position(), search.cell_start(), *found, *no_list});
+    backend_->launch(Kernel::count_neighbors, count, {constants, copy.position(), search.cell_start(), *found});
     backend_->launch(Kernel::words_by_id, count, {static_cast<std::uint32_t>(count), copy.id(), *found, *by_id});
     backend_->read(*by_id, out, count * 4);
 }

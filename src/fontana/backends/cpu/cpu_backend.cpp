@@ -22,6 +22,7 @@ namespace {
 
 // Particles a thread takes at a time: long enough to hide the counter, short enough to share out a splash evenly.
 constexpr std::size_t k_grain = 512;
+static_assert(k_grain % k_list_group == 0, "a thread takes whole lists");
 constexpr int k_most_arguments = 16;
 
 class CpuBuffer : public Buffer {
@@ -45,6 +46,7 @@ char* data_of(const Buffer& buffer) { return static_cast<const CpuBuffer&>(buffe
 struct KernelTable {
     std::vector<CpuKernel> kernels;  // indexed by Kernel
     const char* instruction_set;
+    unsigned list_group = 1;
 };
 
 KernelTable choose_kernels(bool strict) {
@@ -56,7 +58,7 @@ KernelTable choose_kernels(bool strict) {
     const std::string wanted = given ? given : "";
     if (wanted != "baseline" && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
         const bool is_wider = wanted != "avx2" && __builtin_cpu_supports("avx512f");
-        KernelTable table{{avx2_kernels(), avx2_kernels() + count}, is_wider ? "AVX-512" : "AVX2"};
+        KernelTable table{{avx2_kernels(), avx2_kernels() + count}, is_wider ? "AVX-512" : "AVX2", k_list_group};
         for (std::size_t k = 0; k < count; ++k) {
             const char* name = kernel_facts(static_cast<Kernel>(k)).name;
             if (const KernelLoop loop = is_wider ? avx512_loop(name) : avx2_loop(name)) table.kernels[k].run = loop;
@@ -80,7 +82,9 @@ DeviceInfo describe(bool strict) {
     DeviceInfo info;
     info.backend = "cpu";
     info.name = processor_name();
-    info.driver = std::string("native, ") + choose_kernels(strict).instruction_set;
+    const KernelTable table = choose_kernels(strict);
+    info.driver = std::string("native, ") + table.instruction_set;
+    info.list_group = table.list_group;
     const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGE_SIZE);
     info.memory_bytes =
         pages > 0 && page > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page) : 0;

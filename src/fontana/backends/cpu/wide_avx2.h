@@ -17,6 +17,7 @@ struct Vec4 {
 };
 
 inline Vec max_f(Vec a, float b) { return _mm256_max_ps(a, _mm256_set1_ps(b)); }
+inline Vec min_of(Vec a, Vec b) { return _mm256_min_ps(a, b); }
 inline Vec min_f(Vec a, float b) { return _mm256_min_ps(a, _mm256_set1_ps(b)); }
 
 // 1 / sqrt(a): the processor's estimate and one step of Newton, two units in the last place.
@@ -25,10 +26,21 @@ inline Vec inverse_sqrt(Vec a) {
     return y * (1.5f - 0.5f * a * y * y);
 }
 
+// As near to that as is quick: here the estimate alone has twelve bits, too few.
+inline Vec inverse_sqrt_estimate(Vec a) { return inverse_sqrt(a); }
+
 inline float sum_of(Vec a) {
     __m128 s = _mm_add_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));
     s = _mm_add_ps(s, _mm_movehl_ps(s, s));
     return _mm_cvtss_f32(_mm_add_ss(s, _mm_movehdup_ps(s)));
+}
+
+// The sums of a, b, c and d.
+inline float4 sums_of(Vec a, Vec b, Vec c, Vec d) {
+    const __m256 abcd = _mm256_hadd_ps(_mm256_hadd_ps(a, b), _mm256_hadd_ps(c, d));
+    float4 sums;
+    _mm_store_ps(&sums.x, _mm_add_ps(_mm256_castps256_ps128(abcd), _mm256_extractf128_ps(abcd, 1)));
+    return sums;
 }
 
 inline Vec floor_of(Vec a) { return _mm256_floor_ps(a); }
@@ -78,20 +90,6 @@ inline Vec keep(uint mask, Vec a) {
     const __m256i bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
     const __m256i set = _mm256_and_si256(_mm256_set1_epi32(static_cast<int>(mask)), bits);
     return _mm256_and_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(set, bits)), a);
-}
-
-// Bit k: words[k] = i.
-inline uint equal_mask(const uint* words, uint i) {
-    const __m256i same = _mm256_cmpeq_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(words)),
-                                            _mm256_set1_epi32(static_cast<int>(i)));
-    return static_cast<uint>(_mm256_movemask_ps(_mm256_castsi256_ps(same)));
-}
-
-// a where index is not i, else 0: takes the padding of a list (the particle itself) out of a sum.
-inline Vec without(Vec a, const uint* index, uint i) {
-    const __m256i same = _mm256_cmpeq_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(index)),
-                                            _mm256_set1_epi32(static_cast<int>(i)));
-    return _mm256_andnot_ps(_mm256_castsi256_ps(same), a);
 }
 
 // For every mask of eight bits, the places of its set bits first.

@@ -32,100 +32,23 @@ namespace FONTANA_WIDE {
 #define INVERSE_SQRT(a) inverse_sqrt(a)
 #define REAL_FLOOR(a) floor_of(a)
 #include "kernels/anderson.h"
-#include "kernels/coarse_pair.h"
 #include "kernels/force_pair.h"
+#undef INVERSE_SQRT
+#define INVERSE_SQRT(a) inverse_sqrt_estimate(a)
+#include "kernels/coarse_pair.h"
 #include "kernels/pair.h"
+
+}  // namespace FONTANA_WIDE
+}  // namespace fontana
+
+#include "backends/cpu/wide_candidates.h"
+#include "backends/cpu/wide_lists.h"
+
+namespace fontana {
+namespace FONTANA_WIDE {
 
 // Hits of one particle collected before the forces are computed; flushed when full.
 constexpr uint k_most_hits = 256;
-// Farther than any particle can be from another and still be its neighbour, and its square is finite.
-constexpr float k_far = 1.0e18f;
-
-::Real3 sum_of(const Real3& v) { return {sum_of(v.x), sum_of(v.y), sum_of(v.z)}; }
-
-// The candidates for neighbours of all the particles of one cell, in columns: read and turned round once, then tested
-// by each of them from the first-level cache. Where there are more than fit, as with all pairs, each particle reads
-// them for itself.
-class Candidates {
- public:
-    Candidates(const StepConstants& c, const float4* position, const uint* cell_start)
-        : c_(c), position_(position), cell_start_(cell_start) {}
-
-    // Calls visit(positions, their indices) for every vector of candidates of a particle at x_i. Lanes beyond the last
-    // candidate are far from everything and weigh nothing.
-    template <typename Visit>
-    inline __attribute__((always_inline)) void for_all(const float4& x_i, const Visit& visit) {
-        start(c_.use_grid ? cell_of(c_, x_i) : CellCoordinates{0u, 0u, 0u});
-        if (fits_)
-            for (uint k = 0; k < count_; k += width)
-                visit(Vec4{load(x_ + k), load(y_ + k), load(z_ + k), load(w_ + k)}, index_ + k);
-        else
-            for_ranges([&](uint first, uint end) {
-                alignas(64) uint index[width];
-                store_indices(first, index);
-                visit(blanked(load(position_ + first), end - first), index);
-            });
-    }
-
- private:
-    // The cell before is often the cell still.
-    void start(CellCoordinates cell) {
-        if (cell.x == cell_.x && cell.y == cell_.y && cell.z == cell_.z) return;
-        cell_ = cell;
-        uint total = 0;
-        for (uint k = 0; k < candidate_range_count(c_, cell); ++k) {
-            const Range range = candidate_range(c_, cell, k, cell_start_);
-            total += range.end - range.begin;
-        }
-        count_ = 0;
-        fits_ = total <= k_room;
-        if (!fits_) return;
-        for_ranges([&](uint first, uint end) { take(load(position_ + first), first, end - first); });
-        take(blanked(Vec4{}, 0), 0, 0);
-    }
-
-    // Calls visit(first, end of the range) for every vector of every range.
-    template <typename Visit>
-    inline __attribute__((always_inline)) void for_ranges(const Visit& visit) const {
-        const uint range_count = candidate_range_count(c_, cell_);
-        for (uint k = 0; k < range_count; ++k) {
-            const Range range = candidate_range(c_, cell_, k, cell_start_);
-            for (uint first = range.begin; first < range.end; first += width) visit(first, range.end);
-        }
-    }
-
-    static Vec4 blanked(const Vec4& rows, uint valid) {
-        if (valid >= width) return rows;
-        const uint within = (1u << valid) - 1u;
-        return {keep(within, rows.x) + keep(~within, k_far - Vec{}), keep(within, rows.y), keep(within, rows.z),
-                keep(within, rows.w)};
-    }
-
-    void take(const Vec4& rows, uint first, uint valid) {
-        store(x_ + count_, rows.x);
-        store(y_ + count_, rows.y);
-        store(z_ + count_, rows.z);
-        store(w_ + count_, rows.w);
-        store_indices(first, index_ + count_);
-        count_ += valid < width ? valid : width;
-    }
-
-    static constexpr uint k_room = 512;
-    const StepConstants& c_;
-    const float4* position_;
-    const uint* cell_start_;
-    CellCoordinates cell_{~0u, ~0u, ~0u};
-    uint count_ = 0;
-    bool fits_ = false;
-    alignas(64) float x_[k_room + width];
-    alignas(64) float y_[k_room + width], z_[k_room + width], w_[k_room + width];
-    alignas(64) uint index_[k_room + width];
-};
-
-Vec distance_squared(const float4& a, const Vec4& b) {
-    const Vec dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
-    return dx * dx + dy * dy + dz * dz;
-}
 
 void density(uint begin, uint end, const StepConstants& c, const float4* position, const float4* velocity,
              const uint* cell_start, float* density_out, float4* packed_position, float4* packed_velocity) {
@@ -133,7 +56,8 @@ void density(uint begin, uint end, const StepConstants& c, const float4* positio
     for (uint i = begin; i < end; ++i) {
         const float4 x_i = position[i];
         Vec sum{};
-        candidates.for_all(x_i, [&](const Vec4& x_j, const uint*) {
+        candidates.choose(&x_i, 1);
+        candidates.for_all([&](const Vec4& x_j, const uint*) {
             // At the support radius the kernel is zero.
             const Vec r_squared = min_f(distance_squared(x_i, x_j), c.support_radius_squared);
             sum += x_j.w * poly6(r_squared, c.support_radius_squared);
@@ -155,7 +79,8 @@ void fluid_force(uint begin, uint end, const StepConstants& c, const float4* pac
                 sum = add_force(sum, c, x_i, v_i, gather(packed_position, hit + k), gather(packed_velocity, hit + k));
             count = 0;
         };
-        candidates.for_all(x_i, [&](const Vec4& x_j, const uint* index) {
+        candidates.choose(&x_i, 1);
+        candidates.for_all([&](const Vec4& x_j, const uint* index) {
             const uint hits = less_mask(distance_squared(x_i, x_j), c.support_radius_squared);
             count += compress_store(hits, index, hit + count);
             if (count > k_most_hits - width) flush();
@@ -170,133 +95,150 @@ void fluid_force(uint begin, uint end, const StepConstants& c, const float4* pac
 void build_neighbor_list(uint begin, uint end, const StepConstants& c, const float4* position, const uint* cell_start,
                          uint* neighbor_count, uint* list) {
     Candidates candidates(c, position, cell_start);
-    for (uint i = begin; i < end; ++i) {
-        const float4 x_i = position[i];
-        uint* const mine = list + std::size_t{i} * c.list_particle_stride;
-        uint count = 0;
-        candidates.for_all(x_i, [&](const Vec4& x_j, const uint* index) {
-            uint hits = less_mask(distance_squared(x_i, x_j), c.support_radius_squared) & ~equal_mask(index, i);
-            if (count + width <= c.list_capacity)
-                count += compress_store(hits, index, mine + count);
-            else
-                for (; hits; hits &= hits - 1, ++count)
-                    if (count < c.list_capacity) mine[count] = index[__builtin_ctz(hits)];
-        });
-        neighbor_count[i] = count;
-        pad_list(c, list, i, count);
+    ListWriter writer(c, neighbor_count, list);
+    for (uint first = begin; first < end; first += k_list_group) {
+        const Members members(first, end, position);
+        candidates.choose(members.x, members.count);
+        writer.write(members, candidates);
     }
+    writer.flush();
 }
 
-// Calls visit(indices of a vector of neighbours, their volumes and positions, pair) along the list of particle i.
-template <typename Visit>
-inline __attribute__((always_inline)) void for_list(const StepConstants& c, uint i, const uint* neighbor_count,
-                                                    const uint* list, const float4* volume_position,
-                                                    const Visit& visit) {
-    const uint* const mine = list + std::size_t{i} * c.list_particle_stride;
-    const uint count = list_length(c, neighbor_count[i]);
-    const float4 x_i = volume_position[i];
-    for (uint k = 0; k < count; k += width) {
-        const Vec4 x_j = gather(volume_position, mine + k);
-        visit(mine + k, x_j, pair_of(x_i, x_j));
-    }
+// Adds all neighbours to the sums of every member. They are turned round a few vectors at a time, then visited by each
+// member from the first-level cache: the sums of all members at once are more than there are registers.
+void add_neighbors(const StepConstants& c, const Members& members, const Members& motion, const float4* position,
+                   const float4* velocity, const uint* neighbor_count, const uint* list, NeighborhoodSums* sums) {
+    constexpr uint k_room = 8;
+    Vec4 x[k_room], v[k_room];
+    uint count = 0;
+    const auto visit_all = [&] {
+        for (uint s = 0; s < members.count; ++s) {
+            NeighborhoodSums sum = sums[s];
+            for (uint k = 0; k < count; ++k)
+                sum = add_neighbor(sum, c, x[k].w, pair_of(members.x[s], x[k]), motion.x[s], v[k]);
+            sums[s] = sum;
+        }
+        count = 0;
+    };
+    for_list(members.first, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
+        x[count] = x_j;
+        v[count] = gather(velocity, j);
+        if (++count == k_room) visit_all();
+    });
+    visit_all();
 }
 
 void sum_neighborhood(uint begin, uint end, const StepConstants& c, const float4* position, const float4* velocity,
-                      const uint* neighbor_count, const uint* list, const float4* volume_position,
-                      const ColliderConstants* collider, float* density_out, float4* factor, float* wall_rate,
-                      float* rate, float4* viscous) {
-    for (uint i = begin; i < end; ++i) {
-        const float4 v_i = velocity[i];
-        Vec relative{}, squares{}, approach{};
-        Real3 s = zero_vector(), shear = zero_vector();
-        for_list(c, i, neighbor_count, list, volume_position, [&](const uint* j, const Vec4& x_j, const Pair& pair) {
-            const Vec4 v_j = gather(velocity, j);
-            relative += without(x_j.w * kernel_value(c, pair.r), j, i);
-            s = add_gradient(s, c, x_j.w, pair);
-            squares += gradient_squared_term(c, x_j.w, pair);
-            approach += divergence_term(c, x_j.w, pair, v_j);
-            shear = add_gradient(shear, c, viscosity_weight(c, x_j.w, pair, v_i, v_j), pair);
-        });
-        const WallTerm walls = walls_at(c, collider, position[i]);
-        const float volume = volume_position[i].w;
-        const float own = volume * ::kernel_value(c, 0.0f) + walls.share;
-        store_density(c, i, volume, own + sum_of(relative), sum_of(s), sum_of(squares), walls, density_out, factor,
-                      wall_rate);
-        rate[i] = divergence_of(factor[i], v_i, sum_of(approach)) - walls.rate;
-        store_viscosity(c, i, sum_of(shear), viscous);
+                      const uint* neighbor_count, const uint* list, const ColliderConstants* collider,
+                      float* density_out, float4* factor, float* wall_rate, float* rate, float4* viscous) {
+    for (uint first = begin; first < end; first += k_list_group) {
+        const Members members(first, end, position), motion(first, end, velocity);
+        NeighborhoodSums sums[k_list_group];
+        for (NeighborhoodSums& zero : sums) zero = no_neighborhood();
+        add_neighbors(c, members, motion, position, velocity, neighbor_count, list, sums);
+        for (uint s = 0; s < members.count; ++s) {
+            const uint i = first + s;
+            const float4 g = sums_of(sums[s].gradient.x, sums[s].gradient.y, sums[s].gradient.z, sums[s].squares);
+            const float4 shear = sums_of(sums[s].shear.x, sums[s].shear.y, sums[s].shear.z, sums[s].density);
+            const WallTerm walls = walls_at(c, collider, members.x[s]);
+            const float4 factor_i = factor_of(c, members.x[s].w, {g.x, g.y, g.z}, g.w, walls);
+            density_out[i] = shear.w + c.rest_density * walls.share;
+            factor[i] = factor_i;
+            wall_rate[i] = walls.rate;
+            rate[i] = divergence_of(c, factor_i, motion.x[s], sum_of(sums[s].flow)) - walls.rate;
+            viscous[i] = viscosity_of(c, {shear.x, shear.y, shear.z});
+        }
     }
 }
 
-float divergence(const StepConstants& c, uint i, const uint* neighbor_count, const uint* list,
-                 const float4* volume_position, const float4* factor, const float4* field) {
-    Vec sum{};
-    for_list(c, i, neighbor_count, list, volume_position, [&](const uint* j, const Vec4& x_j, const Pair& pair) {
-        sum += divergence_term(c, x_j.w, pair, gather(field, j));
-    });
-    return divergence_of(factor[i], field[i], sum_of(sum));
+// G^T applied to `field` at every member, without the walls' own motion: store(i, the result).
+template <typename Store>
+inline __attribute__((always_inline)) void for_divergence(uint begin, uint end, const StepConstants& c,
+                                                          const uint* neighbor_count, const uint* list,
+                                                          const float4* position, const float4* factor,
+                                                          const float4* field, const Store& store) {
+    for (uint first = begin; first < end; first += k_list_group) {
+        const Members members(first, end, position);
+        Vec sum[k_list_group] = {};
+        for_list(first, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
+            const Vec4 a_j = gather(field, j);
+            for (uint s = 0; s < k_list_group; ++s)
+                sum[s] += divergence_term(c, x_j.w, pair_of(members.x[s], x_j), a_j);
+        });
+        const float4 sums = sums_of(sum[0], sum[1], sum[2], sum[3]);
+        for (uint s = 0; s < members.count; ++s)
+            store(first + s, divergence_of(c, factor[first + s], field[first + s], (&sums.x)[s]));
+    }
 }
 
 void density_rate(uint begin, uint end, const StepConstants& c, const float4* velocity, const uint* neighbor_count,
-                  const uint* list, const float4* volume_position, const float4* factor, const float* wall_rate,
-                  float* rate) {
-    for (uint i = begin; i < end; ++i)
-        rate[i] = divergence(c, i, neighbor_count, list, volume_position, factor, velocity) - wall_rate[i];
+                  const uint* list, const float4* position, const float4* factor, const float* wall_rate, float* rate) {
+    for_divergence(begin, end, c, neighbor_count, list, position, factor, velocity,
+                   [&](uint i, float divergence) { rate[i] = divergence - wall_rate[i]; });
 }
 
 void pressure_residual(uint begin, uint end, const StepConstants& c, const float4* gradient, const uint* neighbor_count,
-                       const uint* list, const float4* volume_position, const float4* factor, const float* target,
+                       const uint* list, const float4* position, const float4* factor, const float* target,
                        float* residual) {
-    for (uint i = begin; i < end; ++i) {
-        const float k_u = divergence(c, i, neighbor_count, list, volume_position, factor, gradient);
-        residual[i] = factor[i].w > 0.0f ? target[i] - k_u : 0.0f;
-    }
+    for_divergence(begin, end, c, neighbor_count, list, position, factor, gradient,
+                   [&](uint i, float k_u) { residual[i] = factor[i].w > 0.0f ? target[i] - k_u : 0.0f; });
 }
 
 void pressure_gradient(uint begin, uint end, const StepConstants& c, const float* u, const uint* neighbor_count,
-                       const uint* list, const float4* volume_position, const float4* factor, float4* gradient) {
-    for (uint i = begin; i < end; ++i) {
-        Real3 sum = zero_vector();
-        for_list(c, i, neighbor_count, list, volume_position, [&](const uint* j, const Vec4& x_j, const Pair& pair) {
-            sum = add_gradient(sum, c, x_j.w * gather(u, j), pair);
+                       const uint* list, const float4* position, const float4* factor, float4* gradient) {
+    for (uint first = begin; first < end; first += k_list_group) {
+        const Members members(first, end, position);
+        Real3 sum[k_list_group];
+        for (Real3& zero : sum) zero = zero_vector();
+        for_list(first, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
+            const Vec weight = x_j.w * gather(u, j);
+            for (uint s = 0; s < k_list_group; ++s)
+                sum[s] = add_gradient(sum[s], c, weight, pair_of(members.x[s], x_j));
         });
-        store_gradient(i, u[i], factor[i], sum_of(sum), gradient);
+        for (uint s = 0; s < members.count; ++s) {
+            const float4 g = sums_of(sum[s].x, sum[s].y, sum[s].z, Vec{});
+            gradient[first + s] = gradient_of(c, u[first + s], factor[first + s], {g.x, g.y, g.z});
+        }
     }
 }
 
 void correct_pressure(uint begin, uint end, const StepConstants& c, float delta, const float4* predicted,
                       const uint* neighbor_count, const uint* list, const ColliderConstants* collider,
                       const float4* factor, float* u, float* residual) {
-    for (uint i = begin; i < end; ++i) {
-        Vec relative{};
-        for_list(c, i, neighbor_count, list, predicted, [&](const uint* j, const Vec4& x_j, const Pair& pair) {
-            relative += without(x_j.w * kernel_value(c, pair.r), j, i);
+    for (uint first = begin; first < end; first += k_list_group) {
+        const Members members(first, end, predicted);
+        Vec density[k_list_group] = {};
+        for_list(first, neighbor_count, list, predicted, [&](const uint*, const Vec4& x_j) {
+            for (uint s = 0; s < k_list_group; ++s) density[s] += x_j.w * kernel_value(c, pair_of(members.x[s], x_j).r);
         });
-        const float4 x_i = predicted[i];
-        const float own = x_i.w * ::kernel_value(c, 0.0f) + walls_at(c, collider, x_i).share;
-        store_correction(c, i, delta, own + sum_of(relative), factor, u, residual);
+        for (uint s = 0; s < members.count; ++s) {
+            const float wall_share = walls_at(c, collider, members.x[s]).share;
+            store_correction(c, first + s, delta, sum_of(density[s]), wall_share, factor, u, residual);
+        }
     }
 }
 
-CoarseGradient coarse_gradient(const StepConstants& c, uint i, const float4* volume_position, const float* weight,
+// The columns of G P at particle i.
+CoarseGradient coarse_gradient(const StepConstants& c, uint i, const float4* position, const float* weight,
                                const uint* neighbor_count, const uint* list) {
-    const uint* const mine = list + std::size_t{i} * c.list_particle_stride;
-    const uint count = list_length(c, neighbor_count[i]);
-    const float4 x_i = volume_position[i];
+    const float4 x_i = position[i], home = ::coarse_home(c, x_i);
     CoarseGradient a = no_coarse_gradient();
-    for (uint k = 0; k < count; k += width)
-        a = add_coarse_gradient(a, c, gather(weight, mine + k), x_i, gather(volume_position, mine + k));
+    for_list(i / k_list_group * k_list_group, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
+        const Vec weight_j = x_j.w > 0.0f ? c.gradient_scale * gather(weight, j) : Vec{};
+        a = add_coarse_gradient(a, c, weight_j, pair_of(x_i, x_j), home, coarse_place(c, x_j));
+    });
     return a;
 }
 
 void coarse_products(uint begin, uint end, const StepConstants& c, const uint&, const uint* cell_start,
-                     const float4* volume_position, const float4* factor, const float* weight,
-                     const uint* neighbor_count, const uint* list, float* table) {
+                     const float4* position, const float4* factor, const float* weight, const uint* neighbor_count,
+                     const uint* list, float* table) {
     for (uint cell = begin; cell < end; ++cell) {
         const uint first = cell_start[cell], last = cell_start[cell + 1];
         if (last - first < COARSE_LEAST) continue;
         Vec8 product[8] = {};
-        for (uint i = first; i < last; ++i) {
-            const CoarseGradient a = coarse_gradient(c, i, volume_position, weight, neighbor_count, list);
+        for (uint i = first; i < last; i += COARSE_SAMPLE) {
+            const CoarseGradient a = coarse_gradient(c, i, position, weight, neighbor_count, list);
             Vec8 x = sums_of(a.x), y = sums_of(a.y), z = sums_of(a.z);
             if (weight[i] > 0.0f) {
                 x[0] += factor[i].x;
@@ -305,9 +247,29 @@ void coarse_products(uint begin, uint end, const StepConstants& c, const uint&, 
             }
             for (uint p = 0; p < 8; ++p) product[p] += x[p] * x + y[p] * y + z[p] * z;
         }
+        const float share = coarse_share(last - first);
         float* out = table + first / COARSE_LEAST * COARSE_TABLE;
         for (uint p = 0; p < 8; ++p)
-            for (uint q = p; q < 8; ++q) *out++ = product[p][q];
+            for (uint q = p; q < 8; ++q) *out++ = share * product[p][q];
+    }
+}
+
+// A cell's particles in a row, since they share a correction.
+void relax(uint begin, uint end, const StepConstants& c, const float& relaxation, const uint& with_coarse,
+           const CoarseLevel& level, const float4* position, const uint* cell_start, const float4* factor,
+           const float* weight, const float* residual, const float* z, const float* u, float* step) {
+    for (uint i = begin; i < end;) {
+        uint last = end;
+        float z_here = 0.0f;
+        if (with_coarse) {
+            const uint cell_end = cell_start[cell_key(c, cell_of(c, position[i])) + 1];
+            last = cell_end < end ? cell_end : end;
+            z_here = coarse_correction(c, level, position[i], cell_start, z);
+        }
+        for (; i < last; ++i) {
+            const bool is_corrected = with_coarse && is_pressed(weight[i], residual[i], u[i]);
+            step[i] = relaxed_step(relaxation, factor[i].w, residual[i], is_corrected ? z_here : 0.0f, u[i]);
+        }
     }
 }
 
@@ -370,7 +332,7 @@ KernelLoop FONTANA_WIDE_LOOP(const char* kernel) {
 #define WIDE(function) \
     {#function, &Loop<decltype(&::function), decltype(&FONTANA_WIDE::function)>::run<&FONTANA_WIDE::function>},
         WIDE(density) WIDE(fluid_force) WIDE(build_neighbor_list) WIDE(sum_neighborhood) WIDE(density_rate)
-            WIDE(pressure_residual) WIDE(pressure_gradient) WIDE(correct_pressure) WIDE(anderson_sums)
+            WIDE(pressure_residual) WIDE(pressure_gradient) WIDE(correct_pressure) WIDE(relax) WIDE(anderson_sums)
                 WIDE(coarse_products)
 #undef WIDE
     };

@@ -1,0 +1,114 @@
+// Lists of neighbours for loops over vectors: one for every k_list_group particles in a row, of all that are a neighbour
+// of at least one of them, themselves included. Each is read and turned round once for the group, and takes a third of
+// the memory of its members' own lists. That a few on it are farther than the support radius from some member costs
+// arithmetic and changes nothing: there W and its gradient are zero.
+//
+// Word 2 g of `neighbor_count` is where the list of group g begins, word 2 g + 1 how long it is, and the last word the
+// length of all of them. Included once per instruction set, by wide_kernels.cpp.
+#pragma once
+
+namespace fontana::FONTANA_WIDE {
+
+// Up to k_list_group particles in a row; the last stands in for those beyond the end.
+struct Members {
+    Members(uint first_member, uint end, const float4* position) : first(first_member) {
+        count = end - first < k_list_group ? end - first : k_list_group;
+        for (uint s = 0; s < k_list_group; ++s) x[s] = position[first + (s < count ? s : count - 1)];
+    }
+    uint first, count;
+    float4 x[k_list_group];
+};
+
+inline Vec least_distance_squared(const Members& members, const Vec4& x_j) {
+    Vec least = distance_squared(members.x[0], x_j);
+    for (uint s = 1; s < k_list_group; ++s) least = min_of(least, distance_squared(members.x[s], x_j));
+    return least;
+}
+
+// Gathers lists and puts them, many at once, behind what other threads have put there. Where they lie depends on the
+// threads; what they say does not.
+class ListWriter {
+ public:
+    ListWriter(const StepConstants& c, uint* neighbor_count, uint* list)
+        : c_(c), neighbor_count_(neighbor_count), list_(list) {}
+
+    void write(const Members& members, const Candidates& candidates) {
+        const uint group = members.first / k_list_group;
+        if (!candidates.are_few()) {
+            flush();
+            write_long(group, members, candidates);
+            return;
+        }
+        if (count_ + Candidates::k_room > k_room) flush();
+        if (count_ == 0) first_group_ = group;
+        const uint begin = count_;
+        candidates.for_all([&](const Vec4& x_j, const uint* index) {
+            count_ += compress_store(hits(members, x_j), index, found_ + count_);
+        });
+        neighbor_count_[2 * group] = begin;
+        neighbor_count_[2 * group + 1] = count_ - begin;
+        next_group_ = group + 1;
+    }
+
+    void flush() {
+        if (count_ == 0) return;
+        const uint start = place(count_);
+        for (uint group = first_group_; group < next_group_; ++group) neighbor_count_[2 * group] += start;
+        if (fits(start, count_)) __builtin_memcpy(list_ + start, found_, count_ * sizeof(uint));
+        count_ = 0;
+    }
+
+ private:
+    uint hits(const Members& members, const Vec4& x_j) const {
+        return less_mask(least_distance_squared(members, x_j), c_.support_radius_squared);
+    }
+
+    uint place(uint count) const {
+        return __atomic_fetch_add(neighbor_count_ + shared_list_total(c_.particle_count, k_list_group), count, __ATOMIC_RELAXED);
+    }
+
+    // If not, the host sees the length of all of them and builds them anew.
+    bool fits(uint start, uint count) const { return start <= c_.list_capacity && count <= c_.list_capacity - start; }
+
+    // With more candidates than there is room for: counted first.
+    void write_long(uint group, const Members& members, const Candidates& candidates) {
+        uint count = 0;
+        candidates.for_all([&](const Vec4& x_j, const uint*) {
+            count += static_cast<uint>(__builtin_popcount(hits(members, x_j)));
+        });
+        const uint start = place(count);
+        neighbor_count_[2 * group] = start;
+        neighbor_count_[2 * group + 1] = count;
+        if (!fits(start, count)) return;
+        uint* out = list_ + start;
+        candidates.for_all([&](const Vec4& x_j, const uint* index) {
+            uint found[2 * width];
+            const uint more = compress_store(hits(members, x_j), index, found);
+            __builtin_memcpy(out, found, more * sizeof(uint));
+            out += more;
+        });
+    }
+
+    static constexpr uint k_room = 4 * Candidates::k_room;
+    const StepConstants& c_;
+    uint* const neighbor_count_;
+    uint* const list_;
+    uint count_ = 0, first_group_ = 0, next_group_ = 0;
+    uint found_[k_room + width];
+};
+
+// Calls visit(their indices, their positions) for every vector of neighbours on the list of the group that begins at
+// particle `first`. Lanes beyond the end of the list have valid indices and weigh nothing.
+template <typename Visit>
+inline __attribute__((always_inline)) void for_list(uint first, const uint* neighbor_count, const uint* list,
+                                                    const float4* position, const Visit& visit) {
+    const uint group = first / k_list_group, count = neighbor_count[2 * group + 1];
+    const uint* const mine = list + neighbor_count[2 * group];
+    for (uint k = 0; k < count; k += width) {
+        Vec4 x_j = gather(position, mine + k);
+        if (count - k < width) x_j.w = keep((1u << (count - k)) - 1u, x_j.w);
+        visit(mine + k, x_j);
+    }
+}
+
+}  // namespace fontana::FONTANA_WIDE
