@@ -1,6 +1,5 @@
 // The coarse matrices against what defines them: P^T K P, one column at a time, with the kernels of the solve itself
-// for K = G^T G and sums over cells for P. All kernels run as plain C++ here, and every particle is asked.
-#define COARSE_SAMPLE 1u
+// for K = G^T G and sums over cells for P. All kernels run as plain C++ here.
 
 #include <cmath>
 #include <cstdio>

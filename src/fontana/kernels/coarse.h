@@ -12,12 +12,7 @@
 #include "coarse_pair.h"
 #include "incompressible.h"
 
-#define COARSE_LEAST 4u  // of the 8 particles that a full cell has
-// Of a cell's particles every so many are asked for their products, and stand for the others: what is off by a few
-// percent in the matrix is less than what stretching it makes up for.
-#ifndef COARSE_SAMPLE
-#define COARSE_SAMPLE 4u
-#endif
+#define COARSE_LEAST 4u     // of the 8 particles that a full cell has
 #define COARSE_TABLE 36u    // products of the 8 coarse unknowns that one cell's particles feel, symmetric
 #define COARSE_STENCIL 27u  // a coarse cell and its neighbours; slot (x+1) + 3 (y+1) + 9 (z+1)
 #define COARSE_CENTRE 13u
@@ -65,26 +60,23 @@ KERNEL void coarse_weights(THREAD_ARG const uint count, GLOBAL const float4* RES
 FN CoarseGradient coarse_gradient(const StepConstants c, uint i, GLOBAL const float4* RESTRICT position,
                                   GLOBAL const float4* RESTRICT factor, GLOBAL const float* RESTRICT weight,
                                   GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list) {
-    const float4 x_i = position[i], home = coarse_home(c, x_i);
+    const float4 x_i = position[i], home = home_place(c, x_i);
     CoarseGradient a = no_coarse_gradient();
     const uint count = list_length(c, neighbor_count[i]);
     for (uint k = 0u; k < count; ++k) {
         const uint j = neighbor(c, list, i, k);
         const float4 x_j = position[j];
-        a = add_coarse_gradient(a, c, c.gradient_scale * weight[j], pair_of(x_i, x_j), home, coarse_place(c, x_j));
+        const CoarseSides sides = coarse_sides(home, coarse_place(c, x_j));
+        a = add_coarse_gradient(a, coarse_pull(c, c.gradient_scale * weight[j], quick_pair_of(x_i, x_j)), sides);
     }
+    a = coarse_cells_of(a);
     if (weight[i] > 0.0f) {
         const float4 s = factor[i];
-        a.x[0] += s.x;
-        a.y[0] += s.y;
-        a.z[0] += s.z;
+        a.x.of[0] += s.x;
+        a.y.of[0] += s.y;
+        a.z.of[0] += s.z;
     }
     return a;
-}
-
-// How many particles each of those asked stands for.
-FN float coarse_share(uint particle_count) {
-    return (float)particle_count / (float)((particle_count + COARSE_SAMPLE - 1u) / COARSE_SAMPLE);
 }
 
 // One thread a cell of the grid: the products of the columns of G P that its particles feel, summed over them.
@@ -99,12 +91,12 @@ KERNEL void coarse_products(THREAD_ARG const StepConstants c, const uint cell_co
     if (end - begin < COARSE_LEAST) return;
     GLOBAL float* RESTRICT sum = table + begin / COARSE_LEAST * COARSE_TABLE;
     for (uint k = 0u; k < COARSE_TABLE; ++k) sum[k] = 0.0f;
-    const float share = coarse_share(end - begin);
-    for (uint i = begin; i < end; i += COARSE_SAMPLE) {
+    for (uint i = begin; i < end; ++i) {
         const CoarseGradient a = coarse_gradient(c, i, position, factor, weight, neighbor_count, list);
         uint k = 0u;
         for (uint p = 0u; p < 8u; ++p)
-            for (uint q = p; q < 8u; ++q, ++k) sum[k] += share * (a.x[p] * a.x[q] + a.y[p] * a.y[q] + a.z[p] * a.z[q]);
+            for (uint q = p; q < 8u; ++q, ++k)
+                sum[k] += a.x.of[p] * a.x.of[q] + a.y.of[p] * a.y.of[q] + a.z.of[p] * a.z.of[q];
     }
 }
 

@@ -88,6 +88,7 @@ FN float max_f(float a, float b) { return a > b ? a : b; }
 // What a pair of particles is computed in: one neighbour at a time, or, where a backend includes the pair formulas
 // again with vectors of them (backends/cpu/wide_kernels.cpp), several at once.
 #define REAL_FLOOR(a) FLOOR(a)
+#define QUICK_INVERSE_SQRT(a) INVERSE_SQRT(a)
 #define REAL float
 #define REAL4 float4
 #define REAL_ZERO 0.0f

@@ -75,7 +75,7 @@ FN float divergence_at(const StepConstants c, uint i, GLOBAL const uint* RESTRIC
     for (uint k = 0u; k < count; ++k) {
         const uint j = neighbor(c, list, i, k);
         const float4 x_j = position[j];
-        sum += divergence_term(c, x_j.w, pair_of(x_i, x_j), field[j]);
+        sum += divergence_term(c, x_j.w, quick_pair_of(x_i, x_j), field[j]);
     }
     return divergence_of(c, factor[i], field[i], sum);
 }
@@ -109,7 +109,7 @@ KERNEL void pressure_gradient(THREAD_ARG const StepConstants c, GLOBAL const flo
     for (uint k = 0u; k < count; ++k) {
         const uint j = neighbor(c, list, i, k);
         const float4 x_j = position[j];
-        sum = add_gradient(sum, c, x_j.w * u[j], pair_of(x_i, x_j));
+        sum = add_gradient(sum, c, x_j.w * u[j], quick_pair_of(x_i, x_j));
     }
     gradient[i] = gradient_of(c, u[i], factor[i], sum);
 }

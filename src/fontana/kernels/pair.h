@@ -8,6 +8,7 @@
 
 typedef struct Pair {
     REAL dx, dy, dz;  // x_ij, m
+    REAL r_squared;   // m^2
     REAL r;           // m
     REAL inverse_r;   // 1/m
 } Pair;
@@ -22,15 +23,28 @@ FN Real3 zero_vector(void) {
     return zero;
 }
 
-// The smallest summand makes x_ij / r zero, not NaN, for the particle itself and for coincident ones.
-FN Pair pair_of(float4 x_i, REAL4 x_j) {
+// The last summand makes x_ij / r zero, not NaN, for the particle itself and for coincident ones.
+FN Pair difference_of(float4 x_i, REAL4 x_j) {
     Pair pair;
     pair.dx = x_i.x - x_j.x;
     pair.dy = x_i.y - x_j.y;
     pair.dz = x_i.z - x_j.z;
-    const REAL r_squared = pair.dx * pair.dx + (pair.dy * pair.dy + (pair.dz * pair.dz + 1.0e-24f));
-    pair.inverse_r = INVERSE_SQRT(r_squared);
-    pair.r = r_squared * pair.inverse_r;
+    pair.r_squared = pair.dx * pair.dx + (pair.dy * pair.dy + (pair.dz * pair.dz + 1.0e-24f));
+    return pair;
+}
+
+FN Pair pair_of(float4 x_i, REAL4 x_j) {
+    Pair pair = difference_of(x_i, x_j);
+    pair.inverse_r = INVERSE_SQRT(pair.r_squared);
+    pair.r = pair.r_squared * pair.inverse_r;
+    return pair;
+}
+
+// With a length as near as is quick, for the operators of the pressure solve: they use the same one everywhere.
+FN Pair quick_pair_of(float4 x_i, REAL4 x_j) {
+    Pair pair = difference_of(x_i, x_j);
+    pair.inverse_r = QUICK_INVERSE_SQRT(pair.r_squared);
+    pair.r = pair.r_squared * pair.inverse_r;
     return pair;
 }
 
@@ -70,14 +84,14 @@ FN NeighborhoodSums no_neighborhood(void) {
 
 FN NeighborhoodSums add_neighbor(NeighborhoodSums sums, const StepConstants c, REAL mass, Pair pair, float4 v_i,
                                  REAL4 v_j) {
-    const REAL slope = kernel_gradient(c, pair.r, pair.inverse_r), g = mass * slope, r_squared = pair.r * pair.r;
+    const REAL slope = kernel_gradient(c, pair.r, pair.inverse_r), g = mass * slope;
     const REAL along_j = pair.dx * v_j.x + pair.dy * v_j.y + pair.dz * v_j.z;
     const REAL along_i = pair.dx * v_i.x + pair.dy * v_i.y + pair.dz * v_i.z;
     sums.density += mass * kernel_value(c, pair.r);
     sums.gradient = add_along(sums.gradient, g, pair);
-    sums.squares += g * slope * r_squared;
+    sums.squares += g * slope * pair.r_squared;
     sums.flow += g * along_j;
-    const REAL inverse = INVERSE_SQRT(r_squared + 0.01f * c.support_radius_squared);
+    const REAL inverse = INVERSE_SQRT(pair.r_squared + 0.01f * c.support_radius_squared);
     sums.shear = add_along(sums.shear, g * (along_i - along_j) * (inverse * inverse), pair);
     return sums;
 }

@@ -27,7 +27,7 @@ inline Vec inverse_sqrt(Vec a) {
 }
 
 // As near to that as is quick: here the estimate alone has twelve bits, too few.
-inline Vec inverse_sqrt_estimate(Vec a) { return inverse_sqrt(a); }
+inline Vec quick_inverse_sqrt(Vec a) { return inverse_sqrt(a); }
 
 inline float sum_of(Vec a) {
     __m128 s = _mm_add_ps(_mm256_castps256_ps128(a), _mm256_extractf128_ps(a, 1));

@@ -27,35 +27,33 @@ inline Vec inverse_sqrt(Vec a) {
 
 // Fourteen bits: gradients are wrong by a part in ten thousand, the same wherever they stand, so that K is as symmetric
 // as it was.
-inline Vec inverse_sqrt_estimate(Vec a) { return _mm512_rsqrt14_ps(a); }
+inline Vec quick_inverse_sqrt(Vec a) { return _mm512_rsqrt14_ps(a); }
 
 inline float sum_of(Vec a) { return _mm512_reduce_add_ps(a); }
 
-// The sums of a, b, c and d.
-inline float4 sums_of(Vec a, Vec b, Vec c, Vec d) {
+inline Vec floor_of(Vec a) { return _mm512_roundscale_ps(a, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC); }
+
+// Sums of a, b, c and d of the quarters of each, a quarter after the other.
+inline __m512 quarter_sums(Vec a, Vec b, Vec c, Vec d) {
     const __m512 ab = _mm512_add_ps(_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b));
     const __m512 cd = _mm512_add_ps(_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d));
-    const __m512 abcd = _mm512_add_ps(_mm512_shuffle_ps(ab, cd, 0x44), _mm512_shuffle_ps(ab, cd, 0xee));
-    const __m256 half =
-        _mm256_add_ps(_mm512_castps512_ps256(abcd), _mm512_castps512_ps256(_mm512_shuffle_f32x4(abcd, abcd, 0x4e)));
+    return _mm512_add_ps(_mm512_shuffle_ps(ab, cd, 0x44), _mm512_shuffle_ps(ab, cd, 0xee));
+}
+
+inline __m256 halves_of(__m512 a) {
+    return _mm256_add_ps(_mm512_castps512_ps256(a), _mm512_castps512_ps256(_mm512_shuffle_f32x4(a, a, 0x4e)));
+}
+
+inline float4 sums_of(Vec a, Vec b, Vec c, Vec d) {
+    const __m256 half = halves_of(quarter_sums(a, b, c, d));
     float4 sums;
     _mm_store_ps(&sums.x, _mm_add_ps(_mm256_castps256_ps128(half), _mm256_extractf128_ps(half, 1)));
     return sums;
 }
 
-inline Vec floor_of(Vec a) { return _mm512_roundscale_ps(a, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC); }
-
-inline Vec8 halves_of(Vec a) {
-    const __m512 swapped = _mm512_shuffle_f32x4(a, a, 0x4e);
-    return _mm256_add_ps(_mm512_castps512_ps256(a), _mm512_castps512_ps256(swapped));
-}
-
 inline Vec8 sums_of(const Vec (&a)[8]) {
-    const __m256 s01 = _mm256_hadd_ps(halves_of(a[0]), halves_of(a[1])),
-                 s23 = _mm256_hadd_ps(halves_of(a[2]), halves_of(a[3])),
-                 s45 = _mm256_hadd_ps(halves_of(a[4]), halves_of(a[5])),
-                 s67 = _mm256_hadd_ps(halves_of(a[6]), halves_of(a[7]));
-    const __m256 low = _mm256_hadd_ps(s01, s23), high = _mm256_hadd_ps(s45, s67);
+    const __m256 low = halves_of(quarter_sums(a[0], a[1], a[2], a[3])),
+                 high = halves_of(quarter_sums(a[4], a[5], a[6], a[7]));
     return _mm256_add_ps(_mm256_permute2f128_ps(low, high, 0x20), _mm256_permute2f128_ps(low, high, 0x31));
 }
 

@@ -74,7 +74,8 @@ class Candidates {
         if (are_in_a_row()) {
             const CellCoordinates first = cell_[0], last = cell_[cell_count_ - 1];
             for (uint r = 0; r < 9; ++r)
-                insert({candidate_range(c_, first, r, cell_start_).begin, candidate_range(c_, last, r, cell_start_).end});
+                insert(
+                    {candidate_range(c_, first, r, cell_start_).begin, candidate_range(c_, last, r, cell_start_).end});
         } else {
             for (uint k = 0; k < cell_count_; ++k)
                 for (uint r = 0; r < candidate_range_count(c_, cell_[k]); ++r)

@@ -19,6 +19,7 @@ namespace FONTANA_WIDE {
 #undef REAL_ZERO
 #undef INVERSE_SQRT
 #undef REAL_FLOOR
+#undef QUICK_INVERSE_SQRT
 #undef FONTANA_SMOOTHING_H
 #undef FONTANA_FORCE_PAIR_H
 #undef FONTANA_SPLINE_H
@@ -31,11 +32,10 @@ namespace FONTANA_WIDE {
     Vec {}
 #define INVERSE_SQRT(a) inverse_sqrt(a)
 #define REAL_FLOOR(a) floor_of(a)
+#define QUICK_INVERSE_SQRT(a) quick_inverse_sqrt(a)
 #include "kernels/anderson.h"
-#include "kernels/force_pair.h"
-#undef INVERSE_SQRT
-#define INVERSE_SQRT(a) inverse_sqrt_estimate(a)
 #include "kernels/coarse_pair.h"
+#include "kernels/force_pair.h"
 #include "kernels/pair.h"
 
 }  // namespace FONTANA_WIDE
@@ -163,7 +163,7 @@ inline __attribute__((always_inline)) void for_divergence(uint begin, uint end, 
         for_list(first, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
             const Vec4 a_j = gather(field, j);
             for (uint s = 0; s < k_list_group; ++s)
-                sum[s] += divergence_term(c, x_j.w, pair_of(members.x[s], x_j), a_j);
+                sum[s] += divergence_term(c, x_j.w, quick_pair_of(members.x[s], x_j), a_j);
         });
         const float4 sums = sums_of(sum[0], sum[1], sum[2], sum[3]);
         for (uint s = 0; s < members.count; ++s)
@@ -193,7 +193,7 @@ void pressure_gradient(uint begin, uint end, const StepConstants& c, const float
         for_list(first, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
             const Vec weight = x_j.w * gather(u, j);
             for (uint s = 0; s < k_list_group; ++s)
-                sum[s] = add_gradient(sum[s], c, weight, pair_of(members.x[s], x_j));
+                sum[s] = add_gradient(sum[s], c, weight, quick_pair_of(members.x[s], x_j));
         });
         for (uint s = 0; s < members.count; ++s) {
             const float4 g = sums_of(sum[s].x, sum[s].y, sum[s].z, Vec{});
@@ -218,16 +218,58 @@ void correct_pressure(uint begin, uint end, const StepConstants& c, float delta,
     }
 }
 
-// The columns of G P at particle i.
-CoarseGradient coarse_gradient(const StepConstants& c, uint i, const float4* position, const float* weight,
-                               const uint* neighbor_count, const uint* list) {
-    const float4 x_i = position[i], home = ::coarse_home(c, x_i);
-    CoarseGradient a = no_coarse_gradient();
-    for_list(i / k_list_group * k_list_group, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
-        const Vec weight_j = x_j.w > 0.0f ? c.gradient_scale * gather(weight, j) : Vec{};
-        a = add_coarse_gradient(a, c, weight_j, pair_of(x_i, x_j), home, coarse_place(c, x_j));
+// Neighbours as the coarse levels see them, a few vectors of them turned round for all particles of a cell that share
+// their list.
+struct CoarseNeighbors {
+    static constexpr uint k_room = 8;
+    Vec4 x[k_room];
+    Vec weight[k_room];
+    CoarseSides sides[k_room];
+    uint count = 0;
+};
+
+// The columns of G P at one particle.
+struct CoarseColumns {
+    Vec8 x{}, y{}, z{};
+};
+
+// The sums of one axis of `pull`, by coarse cell.
+template <REAL Real3::* axis>
+Vec8 coarse_column(const CoarseNeighbors& neighbors, const Real3* pull) {
+    CoarseSums sums{};
+    for (uint k = 0; k < neighbors.count; ++k) sums = add_beyond(sums, pull[k].*axis, neighbors.sides[k]);
+    sums = apart(sums);
+    return sums_of(sums.of);
+}
+
+void add_coarse_neighbors(const StepConstants& c, const CoarseNeighbors& neighbors, const float4& x_i,
+                          CoarseColumns& a) {
+    Real3 pull[CoarseNeighbors::k_room];
+    for (uint k = 0; k < neighbors.count; ++k)
+        pull[k] = coarse_pull(c, neighbors.weight[k], quick_pair_of(x_i, neighbors.x[k]));
+    a.x += coarse_column<&Real3::x>(neighbors, pull);
+    a.y += coarse_column<&Real3::y>(neighbors, pull);
+    a.z += coarse_column<&Real3::z>(neighbors, pull);
+}
+
+// For the members of a group from the one numbered `from` on, which are in one cell.
+void coarse_columns(const StepConstants& c, const Members& members, uint from, const float4* position,
+                    const float* weight, const uint* neighbor_count, const uint* list, CoarseColumns* a) {
+    CoarseNeighbors neighbors;
+    const auto add_all = [&] {
+        for (uint s = from; s < members.count; ++s) add_coarse_neighbors(c, neighbors, members.x[s], a[s]);
+        neighbors.count = 0;
+    };
+    const float4 home = ::home_place(c, members.x[from]);
+    for_list(members.first, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
+        const uint k = neighbors.count++;
+        neighbors.x[k] = x_j;
+        // What is beyond the end of the list has no mass.
+        neighbors.weight[k] = x_j.w > 0.0f ? c.gradient_scale * gather(weight, j) : Vec{};
+        neighbors.sides[k] = coarse_sides(home, coarse_place(c, x_j));
+        if (neighbors.count == CoarseNeighbors::k_room) add_all();
     });
-    return a;
+    add_all();
 }
 
 void coarse_products(uint begin, uint end, const StepConstants& c, const uint&, const uint* cell_start,
@@ -237,20 +279,22 @@ void coarse_products(uint begin, uint end, const StepConstants& c, const uint&, 
         const uint first = cell_start[cell], last = cell_start[cell + 1];
         if (last - first < COARSE_LEAST) continue;
         Vec8 product[8] = {};
-        for (uint i = first; i < last; i += COARSE_SAMPLE) {
-            const CoarseGradient a = coarse_gradient(c, i, position, weight, neighbor_count, list);
-            Vec8 x = sums_of(a.x), y = sums_of(a.y), z = sums_of(a.z);
-            if (weight[i] > 0.0f) {
-                x[0] += factor[i].x;
-                y[0] += factor[i].y;
-                z[0] += factor[i].z;
+        for (uint group = first / k_list_group * k_list_group; group < last; group += k_list_group) {
+            const Members members(group, last, position);
+            const uint from = first > group ? first - group : 0;
+            CoarseColumns a[k_list_group];
+            coarse_columns(c, members, from, position, weight, neighbor_count, list, a);
+            for (uint s = from; s < members.count; ++s) {
+                const float4 own = weight[group + s] > 0.0f ? factor[group + s] : float4{};
+                a[s].x[0] += own.x;
+                a[s].y[0] += own.y;
+                a[s].z[0] += own.z;
+                for (uint p = 0; p < 8; ++p) product[p] += a[s].x[p] * a[s].x + a[s].y[p] * a[s].y + a[s].z[p] * a[s].z;
             }
-            for (uint p = 0; p < 8; ++p) product[p] += x[p] * x + y[p] * y + z[p] * z;
         }
-        const float share = coarse_share(last - first);
         float* out = table + first / COARSE_LEAST * COARSE_TABLE;
         for (uint p = 0; p < 8; ++p)
-            for (uint q = p; q < 8; ++q) *out++ = share * product[p][q];
+            for (uint q = p; q < 8; ++q) *out++ = product[p][q];
     }
 }
 

@@ -1,7 +1,7 @@
-// Lists of neighbours for loops over vectors: one for every k_list_group particles in a row, of all that are a neighbour
-// of at least one of them, themselves included. Each is read and turned round once for the group, and takes a third of
-// the memory of its members' own lists. That a few on it are farther than the support radius from some member costs
-// arithmetic and changes nothing: there W and its gradient are zero.
+// Lists of neighbours for loops over vectors: one for every k_list_group particles in a row, of all that are a
+// neighbour of at least one of them, themselves included. Each is read and turned round once for the group, and takes a
+// third of the memory of its members' own lists. That a few on it are farther than the support radius from some member
+// costs arithmetic and changes nothing: there W and its gradient are zero.
 //
 // Word 2 g of `neighbor_count` is where the list of group g begins, word 2 g + 1 how long it is, and the last word the
 // length of all of them. Included once per instruction set, by wide_kernels.cpp.
@@ -64,7 +64,8 @@ class ListWriter {
     }
 
     uint place(uint count) const {
-        return __atomic_fetch_add(neighbor_count_ + shared_list_total(c_.particle_count, k_list_group), count, __ATOMIC_RELAXED);
+        return __atomic_fetch_add(neighbor_count_ + shared_list_total(c_.particle_count, k_list_group), count,
+                                  __ATOMIC_RELAXED);
     }
 
     // If not, the host sees the length of all of them and builds them anew.
@@ -73,9 +74,8 @@ class ListWriter {
     // With more candidates than there is room for: counted first.
     void write_long(uint group, const Members& members, const Candidates& candidates) {
         uint count = 0;
-        candidates.for_all([&](const Vec4& x_j, const uint*) {
-            count += static_cast<uint>(__builtin_popcount(hits(members, x_j)));
-        });
+        candidates.for_all(
+            [&](const Vec4& x_j, const uint*) { count += static_cast<uint>(__builtin_popcount(hits(members, x_j))); });
         const uint start = place(count);
         neighbor_count_[2 * group] = start;
         neighbor_count_[2 * group + 1] = count;
@@ -97,13 +97,17 @@ class ListWriter {
     uint found_[k_room + width];
 };
 
+inline uint list_length_of(uint first, const uint* neighbor_count) {
+    return neighbor_count[2 * (first / k_list_group) + 1];
+}
+
 // Calls visit(their indices, their positions) for every vector of neighbours on the list of the group that begins at
 // particle `first`. Lanes beyond the end of the list have valid indices and weigh nothing.
 template <typename Visit>
 inline __attribute__((always_inline)) void for_list(uint first, const uint* neighbor_count, const uint* list,
                                                     const float4* position, const Visit& visit) {
-    const uint group = first / k_list_group, count = neighbor_count[2 * group + 1];
-    const uint* const mine = list + neighbor_count[2 * group];
+    const uint count = list_length_of(first, neighbor_count);
+    const uint* const mine = list + neighbor_count[2 * (first / k_list_group)];
     for (uint k = 0; k < count; k += width) {
         Vec4 x_j = gather(position, mine + k);
         if (count - k < width) x_j.w = keep((1u << (count - k)) - 1u, x_j.w);
