@@ -43,12 +43,12 @@ const char* OP_Operator::input_label(std::size_t index) const {
     return index < input_labels_.size() ? input_labels_[index].c_str() : "Input";
 }
 
-bool OP_OperatorTable::addOperator(OP_Operator* entry) {
-    return operators_.emplace(entry->getName().toStdString(), std::unique_ptr<OP_Operator>(entry)).second;
+bool OP_OperatorTable::addOperator(OP_Operator* entry, std::ostream*) {
+    return operators_.emplace(entry->name().toStdString(), std::unique_ptr<OP_Operator>(entry)).second;
 }
 
-OP_Operator* OP_OperatorTable::getOperator(const UT_StringRef& name) const {
-    const auto found = operators_.find(name.toStdString());
+OP_Operator* OP_OperatorTable::getOperator(const char* name) const {
+    const auto found = operators_.find(name);
     return found == operators_.end() ? nullptr : found->second.get();
 }
 
@@ -91,7 +91,7 @@ bool OP_Node::needs_cook(const OP_Context& context) const {
 
 OP_ERROR OP_Node::ensure_cooked(OP_Context& context) {
     if (!needs_cook(context)) return error();
-    errors_.clearAndDestroyErrors();
+    errors_.clear();
     is_dirty_ = reads_time_ = has_read_keys_ = false;
     flags_.setTimeDep(false);
     const auto wired = static_cast<unsigned>(

@@ -18,7 +18,9 @@ class GA_ElementGroup {
         if (static_cast<std::size_t>(offset) >= members_.size()) members_.resize(static_cast<std::size_t>(offset) + 1);
         members_[static_cast<std::size_t>(offset)] = true;
     }
-    void removeOffset(GA_Offset offset) {
+
+    // The double's own.
+    void remove(GA_Offset offset) {
         if (containsOffset(offset)) members_[static_cast<std::size_t>(offset)] = false;
     }
 

@@ -14,12 +14,12 @@ class OP_Operator {
                 const char* tab_submenu_path = nullptr);
     virtual ~OP_Operator() = default;
 
-    const UT_StringHolder& getName() const { return name_; }
-    const UT_StringHolder& getEnglish() const { return english_; }
     void setIconName(const char* icon) { icon_ = icon; }
-    const UT_StringHolder& getIconName() const { return icon_; }
 
     // The double's own.
+    const UT_StringHolder& name() const { return name_; }
+    const UT_StringHolder& english() const { return english_; }
+    const UT_StringHolder& icon() const { return icon_; }
     OP_Node* construct(OP_Network* network, const char* name) { return construct_(network, name, this); }
     const PRM_Template* templates() const { return templates_; }
     unsigned min_sources() const { return min_sources_; }

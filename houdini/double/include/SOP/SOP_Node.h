@@ -4,6 +4,7 @@
 #include "GU/GU_DetailHandle.h"
 #include "OP/OP_Node.h"
 #include "SOP/SOP_Error.h"
+#include "SYS/SYS_Visibility.h"
 
 class OP_OperatorTable;
 class SOP_NodeVerb;

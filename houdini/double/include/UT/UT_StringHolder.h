@@ -29,4 +29,9 @@ class UT_StringHolder {
 using UT_StringRef = UT_StringHolder;
 using UT_String = UT_StringHolder;
 
+namespace UT {
+namespace Literal {
 inline UT_StringHolder operator""_sh(const char* text, std::size_t length) { return std::string(text, length); }
+}  // namespace Literal
+}  // namespace UT
+using namespace UT::Literal;
