@@ -10,7 +10,6 @@
 class GA_ElementGroup {
  public:
     explicit GA_ElementGroup(std::string name) : name_(std::move(name)) {}
-    const UT_StringHolder& getName() const { return name_; }
     bool containsOffset(GA_Offset offset) const {
         return static_cast<std::size_t>(offset) < members_.size() && members_[static_cast<std::size_t>(offset)];
     }

@@ -55,7 +55,7 @@ class OP_Node : public OP_Parameters {
     OP_ERROR setInput(OP_InputIdx index, OP_Node* input);
     virtual const char* inputLabel(OP_InputIdx index) const;
 
-    void forceRecook(bool even_if_locked = true);
+    void forceRecook();
     bool isCooking(bool include_multithreaded = false) const;
     UT_ErrorSeverity error() const { return errors_.getSeverity(); }
     virtual void fillInfoTreeNodeSpecific(UT_InfoTree&, const OP_NodeInfoTreeParms&) {}
@@ -71,7 +71,7 @@ class OP_Node : public OP_Parameters {
     void note_time_dependent_input() { reads_time_ = true; }
 
  protected:
-    virtual OP_ERROR cookMe(OP_Context& context) = 0;
+    virtual OP_ERROR cook_me(OP_Context& context) = 0;
     void parameter_changed() override { is_dirty_ = true; }
     UT_ErrorManager& error_manager() { return errors_; }
 

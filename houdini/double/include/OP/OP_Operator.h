@@ -4,7 +4,7 @@
 #include "OP/OP_Node.h"
 
 using OP_Constructor = OP_Node* (*)(OP_Network*, const char*, OP_Operator*);
-enum OP_OperatorFlag { OP_FLAG_NETWORK = 0x1, OP_FLAG_GENERATOR = 0x2, OP_FLAG_UNORDERED = 0x4, OP_FLAG_OUTPUT = 0x40 };
+enum { OP_FLAG_NETWORK = 0x1, OP_FLAG_GENERATOR = 0x2, OP_FLAG_UNORDERED = 0x4, OP_FLAG_OUTPUT = 0x40 };
 
 class OP_Operator {
  public:

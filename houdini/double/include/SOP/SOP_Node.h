@@ -36,9 +36,9 @@ class SOP_Node : public OP_Node {
 
  protected:
     virtual OP_ERROR cookMySop(OP_Context& context) = 0;
-    OP_ERROR cookMe(OP_Context& context) override;
+    OP_ERROR cook_me(OP_Context& context) override;
     OP_ERROR cookMyselfAsVerb(OP_Context& context);
-    OP_ERROR duplicateSource(OP_InputIdx index, OP_Context& context, GU_Detail* destination = nullptr);
+    OP_ERROR duplicateSource(OP_InputIdx index, OP_Context& context);
 
     void addError(int code, const char* text = nullptr) { error_manager().add(UT_ERROR_ABORT, code, text); }
     void addWarning(int code, const char* text = nullptr) { error_manager().add(UT_ERROR_WARNING, code, text); }

@@ -16,8 +16,6 @@ class UT_StringHolder {
     const char* c_str() const { return text_.c_str(); }
     const char* buffer() const { return text_.c_str(); }
     operator const char*() const { return text_.c_str(); }
-    exint length() const { return static_cast<exint>(text_.size()); }
-    bool isstring() const { return !text_.empty(); }
     std::string toStdString() const { return text_; }
     bool operator==(const UT_StringHolder& other) const { return text_ == other.text_; }
     bool operator!=(const UT_StringHolder& other) const { return text_ != other.text_; }
