@@ -8,7 +8,7 @@ INCLUDE = DOUBLE / "include"
 PAGE = (DOUBLE / "PROVENANCE.md").read_text(encoding="utf-8")
 ROWS = [line for line in PAGE.splitlines() if re.match(r"\| (?!What |Header )", line)]
 ADDRESS = re.compile(
-    r"https://www\.sidefx\.com/docs/hdk/[\w-]+\.html"
+    r"https://www\.sidefx\.com/docs/(?:hdk|houdini)/[\w/-]+\.html"
     r"|https://github\.com/[\w.-]+/[\w.-]+/blob/[0-9a-f]{40}/[\w./-]+#L\d+"
 )
 # What tests call in place of Houdini is nothing of the HDK's.
