@@ -104,7 +104,7 @@ void SOP_FontanaSolver::make_points(GA_Size count) {
     const GA_Size missing = count - gdp->getNumPoints();
     if (missing > 0) gdp->appendPointBlock(missing);
     gdp->addFloatTuple(GA_ATTRIB_POINT, "v", 3)->setTypeInfo(GA_TYPE_VECTOR);
-    gdp->addIntTuple(GA_ATTRIB_POINT, "id", 1, GA_Defaults(-1), nullptr, nullptr, GA_STORE_INT64);
+    gdp->addTuple(GA_STORE_INT64, GA_ATTRIB_POINT, "id", 1, GA_Defaults(-1));
     for (const char* name : {"density", "pressure", "pscale", "age"}) gdp->addFloatTuple(GA_ATTRIB_POINT, name, 1);
     if (has_output_ && present == count) return;
     gdp->bumpDataIdsForAddOrRemove(true, false, false);

@@ -16,8 +16,6 @@
 namespace fontana::houdini {
 namespace {
 
-const CH_Manager& channels() { return *OPgetDirector()->getChannelManager(); }
-
 const char* const collider_parms[] = {
     "collider_enable",     "collider_type",   "collider_flip",      "collider_centre",     "collider_radius",
     "collider_use_cutoff", "collider_cutoff", "collider_thickness", "collider_elasticity", "collider_friction"};
@@ -37,14 +35,19 @@ bool are_known(const std::vector<std::int64_t>& ids) {
 
 }  // namespace
 
-std::int64_t frame_at(double time) { return std::llround(channels().getSample(time)); }
-double time_at(std::int64_t frame) { return channels().getTime(static_cast<double>(frame)); }
+std::int64_t frame_at(double time) { return std::llround(OP_Context(time).getFloatFrame()); }
+
+double time_at(std::int64_t frame) {
+    OP_Context context(0.0);
+    context.setFrame(static_cast<double>(frame));
+    return context.getTime();
+}
 
 SolverHost::SolverHost(SOP_Node& node, const OP_Context& context, SteadyInput& steady)
     : node_(node), context_(context), steady_(steady), boss_("Fontana: simulating") {
     UT_String group;
     node_.evalString(group, "source_group", 0, context.getTime());
-    group_ = group.c_str();
+    group_ = group.toStdString();
     look_at_input();
 }
 
@@ -52,7 +55,7 @@ template <typename Read>
 void SolverHost::with_input(std::int64_t frame, const Read& read) {
     if (!node_.getInput(0)) return;
     OP_Context context(context_);
-    context.setTime(time_at(frame));
+    context.setFrame(static_cast<double>(frame));
     OP_AutoLockInputs inputs(&node_);
     if (inputs.lockInput(0, context) >= UT_ERROR_ABORT) {
         if (boss_.wasInterrupted()) throw Interrupted();
@@ -115,7 +118,7 @@ Setting SolverHost::read_setting(std::size_t row, double time) const {
     }
     if (setting.name == "solver.backend" && !node_.evalInt("use_gpu", 0, time)) setting.text = "cpu";
     if (setting.name == "time.frame_rate" && node_.evalInt("use_scene_rate", 0, time))
-        setting.numbers[0] = channels().getSamplesPerSec();
+        setting.numbers[0] = OPgetDirector()->getChannelManager()->getSamplesPerSec();
     return setting;
 }
 

@@ -4,6 +4,7 @@
 #include <PRM/PRM_TemplateBuilder.h>
 #include <SOP/SOP_NodeVerb.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "SOP_FontanaSource.proto.h"
@@ -36,9 +37,10 @@ void set_all(std::vector<Value>& values, std::size_t count, bool wanted, Value v
 void apply_panel(const SOP_FontanaSourceParms& parms, SourceParticles& particles) {
     const std::size_t count = particles.count();
     const UT_Vector3D added = parms.getVelocity();
-    if (particles.velocity.empty() && added != UT_Vector3D(0.0, 0.0, 0.0)) particles.velocity.assign(3 * count, 0.0f);
+    const bool adds = std::any_of(added.data(), added.data() + 3, [](double v) { return v != 0.0; });
+    if (particles.velocity.empty() && adds) particles.velocity.assign(3 * count, 0.0f);
     for (std::size_t k = 0; k < particles.velocity.size(); ++k)
-        particles.velocity[k] += static_cast<float>(added(static_cast<unsigned>(k % 3)));
+        particles.velocity[k] += static_cast<float>(added.data()[k % 3]);
     set_all(particles.mass, count, parms.getSetMass() && parms.getMass() > 0.0, static_cast<float>(parms.getMass()));
     set_all(particles.viscosity, count, parms.getSetViscosity(), static_cast<float>(parms.getViscosity()));
     set_all(particles.phase, count, parms.getSetPhase(), static_cast<int32>(parms.getPhase()));

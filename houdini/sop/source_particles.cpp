@@ -2,6 +2,7 @@
 
 #include <GA/GA_Handle.h>
 #include <GA/GA_Primitive.h>
+#include <GA/GA_PrimitiveTypes.h>
 #include <GEO/GEO_PrimVDB.h>
 #include <UT/UT_BoundingBox.h>
 

@@ -128,10 +128,10 @@ void an_unrelated_recook_upstream_is_no_edit() {
 void the_rate_of_the_scene() {
     const Change use = sets("use_scene_rate", 1.0);
     const std::uint64_t at_24 = fresh(use);
-    CHgetManager()->setSamplesPerSec(240.0);
+    CHgetManager()->set_rate(240.0);
     const std::uint64_t at_240 = fresh(use);
     CHECK(at_240 == fresh(nothing));
-    CHgetManager()->setSamplesPerSec(24.0);
+    CHgetManager()->set_rate(24.0);
     CHECK(at_24 != at_240);
 }
 

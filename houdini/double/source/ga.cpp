@@ -119,13 +119,6 @@ void GA_IndexMap::clear() {
     indices_.clear();
 }
 
-GA_Size GA_Range::getEntries() const {
-    if (!group_) return map_->indexSize();
-    GA_Size count = 0;
-    for (GA_Iterator it(*this); !it.atEnd(); ++it) ++count;
-    return count;
-}
-
 void GA_Iterator::skip_others() {
     while (!atEnd() && range_.group() && !range_.group()->containsOffset(**this)) ++index_;
 }
@@ -142,13 +135,14 @@ bool GA_Iterator::blockAdvance(GA_Offset& start, GA_Offset& end) {
     return true;
 }
 
-GA_Primitive::GA_Primitive(const GA_Detail& detail, GA_Offset first_vertex, GA_Size vertex_count, bool closed)
-    : detail_(&detail), first_vertex_(first_vertex), vertex_count_(vertex_count), closed_(closed) {}
+GA_Primitive::GA_Primitive(const GA_Detail& detail, const GA_PrimitiveTypeId& type, GA_Offset first_vertex,
+                           GA_Size vertex_count, bool closed)
+    : detail_(&detail), type_(type), first_vertex_(first_vertex), vertex_count_(vertex_count), closed_(closed) {}
 
 GA_Offset GA_Primitive::getPointOffset(GA_Size i) const { return detail_->getTopology().point_of(first_vertex_ + i); }
 
 std::unique_ptr<GA_Primitive> GA_Primitive::copy_for(const GA_Detail& detail) const {
-    return std::make_unique<GA_Primitive>(detail, first_vertex_, vertex_count_, closed_);
+    return std::make_unique<GA_Primitive>(detail, type_, first_vertex_, vertex_count_, closed_);
 }
 
 GA_Offset GA_Topology::append(GA_Size count) {
@@ -157,7 +151,7 @@ GA_Offset GA_Topology::append(GA_Size count) {
     return first;
 }
 
-GA_Detail::GA_Detail() { add(GA_ATTRIB_POINT, "P", GA_STORE_REAL32, 3, 0.0); }
+GA_Detail::GA_Detail() { addTuple(GA_STORE_REAL32, GA_ATTRIB_POINT, "P", 3); }
 
 GA_Offset GA_Detail::appendPointBlock(GA_Size count) {
     const GA_Offset first = points_.append(count);
@@ -167,8 +161,8 @@ GA_Offset GA_Detail::appendPointBlock(GA_Size count) {
 }
 
 bool GA_Detail::destroyPointOffset(GA_Offset offset) {
-    if (!points_.isOffsetActive(offset)) return false;
-    for (auto& [name, group] : point_groups_) group.removeOffset(offset);
+    if (!points_.is_active(offset)) return false;
+    for (auto& [name, group] : point_groups_) group.remove(offset);
     points_.remove(offset);
     return true;
 }
@@ -179,7 +173,7 @@ void GA_Detail::clearAndDestroy() {
     primitives_.clear();
     point_groups_.clear();
     attributes_.clear();
-    add(GA_ATTRIB_POINT, "P", GA_STORE_REAL32, 3, 0.0);
+    addTuple(GA_STORE_REAL32, GA_ATTRIB_POINT, "P", 3);
 }
 
 void GA_Detail::replaceWith(const GA_Detail& other) {
@@ -212,26 +206,17 @@ GA_Attribute* GA_Detail::findAttribute(GA_AttributeOwner owner, const UT_StringR
     return const_cast<GA_Attribute*>(static_cast<const GA_Detail*>(this)->findAttribute(owner, name));
 }
 
-GA_Attribute* GA_Detail::add(GA_AttributeOwner owner, const UT_StringHolder& name, GA_Storage storage, int tuple_size,
-                             double fallback) {
+GA_Attribute* GA_Detail::addTuple(GA_Storage storage, GA_AttributeOwner owner, const UT_StringHolder& name,
+                                  int tuple_size, const GA_Defaults& defaults) {
     GA_Attribute* present = findAttribute(owner, name);
     if (present && present->storage() == storage && present->getTupleSize() == tuple_size) return present;
     if (present)
         attributes_.erase(
             std::find_if(attributes_.begin(), attributes_.end(), [&](const auto& a) { return a.get() == present; }));
-    attributes_.push_back(std::make_unique<GA_Attribute>(owner, name.toStdString(), storage, tuple_size, fallback));
+    attributes_.push_back(
+        std::make_unique<GA_Attribute>(owner, name.toStdString(), storage, tuple_size, defaults.value()));
     attributes_.back()->resize(owner == GA_ATTRIB_POINT ? points_.offsetSize() : 1);
     return attributes_.back().get();
-}
-
-GA_Attribute* GA_Detail::addFloatTuple(GA_AttributeOwner owner, const UT_StringHolder& name, int tuple_size,
-                                       const GA_Defaults& defaults, const void*, const void*, GA_Storage storage) {
-    return add(owner, name, storage, tuple_size, defaults.value());
-}
-
-GA_Attribute* GA_Detail::addIntTuple(GA_AttributeOwner owner, const UT_StringHolder& name, int tuple_size,
-                                     const GA_Defaults& defaults, const void*, const void*, GA_Storage storage) {
-    return add(owner, name, storage, tuple_size, defaults.value());
 }
 
 GA_PointGroup* GA_Detail::newPointGroup(const UT_StringHolder& name) {
@@ -247,12 +232,12 @@ GA_PointGroup* GA_Detail::findPointGroup(const UT_StringRef& name) {
     return const_cast<GA_PointGroup*>(static_cast<const GA_Detail*>(this)->findPointGroup(name));
 }
 
-GA_Offset GA_Detail::appendPrimitivesAndVertices(GA_PrimitiveTypeId, GA_Size count, GA_Size vertices_each,
+GA_Offset GA_Detail::appendPrimitivesAndVertices(const GA_PrimitiveTypeId& type, GA_Size count, GA_Size vertices_each,
                                                  GA_Offset& first_vertex, bool closed) {
     const GA_Offset first = getNumPrimitives();
     first_vertex = topology_.append(count * vertices_each);
     for (GA_Size k = 0; k < count; ++k)
-        append(std::make_unique<GA_Primitive>(*this, first_vertex + k * vertices_each, vertices_each, closed));
+        append(std::make_unique<GA_Primitive>(*this, type, first_vertex + k * vertices_each, vertices_each, closed));
     return first;
 }
 
@@ -275,14 +260,15 @@ std::vector<std::string> GA_Detail::attribute_names(GA_AttributeOwner owner) con
     return names;
 }
 
-const GA_PointGroup* GOP_Manager::parsePointGroups(const char* pattern, const GroupCreator& creator, bool, bool, bool) {
+const GA_PointGroup* GOP_Manager::parsePointGroups(const char* pattern, const GroupCreator& creator, bool, bool, bool,
+                                                   GA_Index, ParseInfo*) {
     std::istringstream names(pattern ? pattern : "");
     GA_PointGroup merged("");
     std::string name;
     while (names >> name) {
-        const GA_PointGroup* group = creator.detail()->findPointGroup(name);
+        const GA_PointGroup* group = creator.getDetail()->findPointGroup(name);
         if (!group) return nullptr;
-        for (GA_Iterator it(creator.detail()->getPointRange(group)); !it.atEnd(); ++it) merged.addOffset(*it);
+        for (GA_Iterator it(creator.getDetail()->getPointRange(group)); !it.atEnd(); ++it) merged.addOffset(*it);
     }
     made_.push_back(merged);
     return &made_.back();

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <stdexcept>
 
+#include "GA/GA_PrimitiveTypes.h"
 #include "UT/UT_Interrupt.h"
 
 namespace hdk_double {
@@ -52,7 +53,7 @@ void load_plugin(const std::string& path) {
 }
 
 SOP_Node& Network::create(const std::string& type, const std::string& name) {
-    OP_Operator* entry = operators().getOperator(type);
+    OP_Operator* entry = operators().getOperator(type.c_str());
     if (!entry) throw std::runtime_error("no operator '" + type + "'");
     std::unique_ptr<SOP_Node>& place = nodes_[name];
     place.reset(entry->construct(nullptr, name.c_str())->castToSOPNode());
@@ -76,7 +77,7 @@ bool Network::destroy(SOP_Node& node) {
     return true;
 }
 
-fpreal time_of(fpreal frame) { return CHgetManager()->getTime(frame); }
+fpreal time_of(fpreal frame) { return CHgetManager()->time_of_sample(frame); }
 
 const GU_Detail& cook(SOP_Node& node, fpreal frame) {
     OP_Context context(time_of(frame));
@@ -85,8 +86,9 @@ const GU_Detail& cook(SOP_Node& node, fpreal frame) {
 
 void press(SOP_Node& node, const std::string& button) {
     const PRM_Template& parm = node.template_of(button);
-    if (!parm.callback) throw std::runtime_error("the button '" + button + "' does nothing");
-    parm.callback(static_cast<OP_Node*>(&node), 0, 0.0, &parm);
+    PRM_Callback callback = parm.callback;
+    if (callback.isNull()) throw std::runtime_error("the button '" + button + "' does nothing");
+    callback(static_cast<OP_Node*>(&node), 0, 0.0, &parm);
 }
 
 std::vector<std::pair<std::string, std::string>> menu_of(SOP_Node& node, const std::string& parameter) {
@@ -105,7 +107,7 @@ std::vector<std::pair<std::string, std::string>> menu_of(SOP_Node& node, const s
 
 UT_InfoTree info_of(SOP_Node& node, fpreal frame) {
     UT_InfoTree tree;
-    node.fillInfoTreeNodeSpecific(tree, OP_NodeInfoTreeParms(OP_Context(time_of(frame))));
+    node.fillInfoTreeNodeSpecific(tree, OP_NodeInfoTreeParms(time_of(frame)));
     return tree;
 }
 

@@ -43,12 +43,12 @@ const char* OP_Operator::input_label(std::size_t index) const {
     return index < input_labels_.size() ? input_labels_[index].c_str() : "Input";
 }
 
-bool OP_OperatorTable::addOperator(OP_Operator* entry) {
-    return operators_.emplace(entry->getName().toStdString(), std::unique_ptr<OP_Operator>(entry)).second;
+bool OP_OperatorTable::addOperator(OP_Operator* entry, std::ostream*) {
+    return operators_.emplace(entry->name().toStdString(), std::unique_ptr<OP_Operator>(entry)).second;
 }
 
-OP_Operator* OP_OperatorTable::getOperator(const UT_StringRef& name) const {
-    const auto found = operators_.find(name.toStdString());
+OP_Operator* OP_OperatorTable::getOperator(const char* name) const {
+    const auto found = operators_.find(name);
     return found == operators_.end() ? nullptr : found->second.get();
 }
 
@@ -77,7 +77,7 @@ const char* OP_Node::inputLabel(OP_InputIdx index) const {
 
 bool OP_Node::is_locked(OP_InputIdx index) const { return locked_.at(static_cast<std::size_t>(index)); }
 void OP_Node::set_locked(OP_InputIdx index, bool locked) { locked_.at(static_cast<std::size_t>(index)) = locked; }
-void OP_Node::forceRecook(bool) { is_dirty_ = true; }
+void OP_Node::forceRecook() { is_dirty_ = true; }
 bool OP_Node::isCooking(bool) const { return cooks_under_way_ > 0; }
 
 bool OP_Node::needs_cook(const OP_Context& context) const {
@@ -91,7 +91,7 @@ bool OP_Node::needs_cook(const OP_Context& context) const {
 
 OP_ERROR OP_Node::ensure_cooked(OP_Context& context) {
     if (!needs_cook(context)) return error();
-    errors_.clearAndDestroyErrors();
+    errors_.clear();
     is_dirty_ = reads_time_ = has_read_keys_ = false;
     flags_.setTimeDep(false);
     const auto wired = static_cast<unsigned>(
@@ -102,7 +102,7 @@ OP_ERROR OP_Node::ensure_cooked(OP_Context& context) {
     }
     ++cooks_under_way_;
     try {
-        cookMe(context);
+        cook_me(context);
     } catch (...) {
         --cooks_under_way_;
         throw;
@@ -165,12 +165,12 @@ const GU_Detail* SOP_Node::inputGeo(OP_InputIdx index) const {
 
 const GU_Detail* SOP_Node::inputGeo(OP_InputIdx index, const OP_Context&) const { return inputGeo(index); }
 
-OP_ERROR SOP_Node::duplicateSource(OP_InputIdx index, OP_Context&, GU_Detail* destination) {
-    (destination ? destination : gdp)->replaceWith(*inputGeo(index));
+OP_ERROR SOP_Node::duplicateSource(OP_InputIdx index, OP_Context&) {
+    gdp->replaceWith(*inputGeo(index));
     return error();
 }
 
-OP_ERROR SOP_Node::cookMe(OP_Context& context) {
+OP_ERROR SOP_Node::cook_me(OP_Context& context) {
     cookMySop(context);
     if (!mySopFlags.getManagesDataIDs()) gdp->bumpAllDataIds();
     return error();

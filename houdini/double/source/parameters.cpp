@@ -112,12 +112,11 @@ void OP_Parameters::evalString(UT_String& value, const UT_StringRef& name, int c
     }
 }
 
-fpreal OP_Parameters::evalFloatInst(const UT_StringRef& name, const int* instance, int component, fpreal time,
-                                    int) const {
+fpreal OP_Parameters::evalFloatInst(const UT_StringRef& name, const int* instance, int component, fpreal time) const {
     return evalFloat(instance_name(name, instance), component, time);
 }
 
-exint OP_Parameters::evalIntInst(const UT_StringRef& name, const int* instance, int component, fpreal time, int) const {
+exint OP_Parameters::evalIntInst(const UT_StringRef& name, const int* instance, int component, fpreal time) const {
     return evalInt(instance_name(name, instance), component, time);
 }
 

@@ -68,8 +68,7 @@ int main(int argc, char** argv) try {
     const char* separator = "{\n";
     for (const auto& [name, entry] : hdk_double::operators().operators()) {
         std::printf("%s  %s: {\"label\": %s, \"icon\": %s, \"parameters\": [", separator, quoted(name).c_str(),
-                    quoted(entry->getEnglish().toStdString()).c_str(),
-                    quoted(entry->getIconName().toStdString()).c_str());
+                    quoted(entry->english().toStdString()).c_str(), quoted(entry->icon().toStdString()).c_str());
         bool is_first = true;
         for (const PRM_Template* parm = entry->templates(); parm->kind != PRM_Template::Kind::end; ++parm)
             print(*parm, is_first);

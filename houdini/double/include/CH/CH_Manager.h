@@ -7,9 +7,11 @@
 class CH_Manager {
  public:
     fpreal getSamplesPerSec() const { return samples_per_second_; }
-    void setSamplesPerSec(fpreal rate) { samples_per_second_ = rate; }
     fpreal getSample(fpreal time) const { return time * samples_per_second_ + 1.0; }
-    fpreal getTime(fpreal sample) const { return (sample - 1.0) / samples_per_second_; }
+
+    // The double's own.
+    void set_rate(fpreal samples_per_second) { samples_per_second_ = samples_per_second; }
+    fpreal time_of_sample(fpreal sample) const { return (sample - 1.0) / samples_per_second_; }
 
  private:
     fpreal samples_per_second_ = 24.0;

@@ -59,17 +59,21 @@ class GA_Detail {
         return findAttribute(GA_ATTRIB_POINT, name);
     }
     GA_Attribute* addFloatTuple(GA_AttributeOwner owner, const UT_StringHolder& name, int tuple_size,
-                                const GA_Defaults& defaults = GA_Defaults(0.0), const void* create_args = nullptr,
-                                const void* options = nullptr, GA_Storage storage = GA_STORE_REAL32);
+                                const GA_Defaults& defaults = GA_Defaults(0.0)) {
+        return addTuple(GA_STORE_REAL32, owner, name, tuple_size, defaults);
+    }
     GA_Attribute* addIntTuple(GA_AttributeOwner owner, const UT_StringHolder& name, int tuple_size,
-                              const GA_Defaults& defaults = GA_Defaults(0), const void* create_args = nullptr,
-                              const void* options = nullptr, GA_Storage storage = GA_STORE_INT32);
+                              const GA_Defaults& defaults = GA_Defaults(0)) {
+        return addTuple(GA_STORE_INT32, owner, name, tuple_size, defaults);
+    }
+    GA_Attribute* addTuple(GA_Storage storage, GA_AttributeOwner owner, const UT_StringHolder& name, int tuple_size,
+                           const GA_Defaults& defaults = GA_Defaults(0.0));
 
     GA_PointGroup* newPointGroup(const UT_StringHolder& name);
     GA_PointGroup* findPointGroup(const UT_StringRef& name);
     const GA_PointGroup* findPointGroup(const UT_StringRef& name) const;
 
-    GA_Offset appendPrimitivesAndVertices(GA_PrimitiveTypeId type, GA_Size count, GA_Size vertices_each,
+    GA_Offset appendPrimitivesAndVertices(const GA_PrimitiveTypeId& type, GA_Size count, GA_Size vertices_each,
                                           GA_Offset& first_vertex, bool closed = false);
     const GA_Primitive* getPrimitiveByIndex(GA_Index index) const;
     GA_Topology& getTopology() { return topology_; }
@@ -83,9 +87,6 @@ class GA_Detail {
     void append(std::unique_ptr<GA_Primitive> primitive) { primitives_.push_back(std::move(primitive)); }
 
  private:
-    GA_Attribute* add(GA_AttributeOwner owner, const UT_StringHolder& name, GA_Storage storage, int tuple_size,
-                      double fallback);
-
     GA_IndexMap points_;
     GA_Topology topology_;
     std::vector<std::unique_ptr<GA_Primitive>> primitives_;

@@ -10,7 +10,6 @@
 class GA_ElementGroup {
  public:
     explicit GA_ElementGroup(std::string name) : name_(std::move(name)) {}
-    const UT_StringHolder& getName() const { return name_; }
     bool containsOffset(GA_Offset offset) const {
         return static_cast<std::size_t>(offset) < members_.size() && members_[static_cast<std::size_t>(offset)];
     }
@@ -18,7 +17,9 @@ class GA_ElementGroup {
         if (static_cast<std::size_t>(offset) >= members_.size()) members_.resize(static_cast<std::size_t>(offset) + 1);
         members_[static_cast<std::size_t>(offset)] = true;
     }
-    void removeOffset(GA_Offset offset) {
+
+    // The double's own.
+    void remove(GA_Offset offset) {
         if (containsOffset(offset)) members_[static_cast<std::size_t>(offset)] = false;
     }
 

@@ -60,18 +60,18 @@ class GA_ROHandleT {
     const GA_Attribute* getAttribute() const { return attribute_; }
     GA_DataId getDataId() const { return attribute_ ? attribute_->getDataId() : GA_INVALID_DATAID; }
 
-    T get(GA_Offset offset) const {
+    T get(GA_Offset offset, int component = 0) const {
         GA_Attribute::count_single_access();
-        return value(offset);
+        return value(offset, component);
     }
-    void getBlock(GA_Offset start, GA_Size count, T* destination, int stride = 1) const {
+    void getBlock(GA_Offset start, GA_Size count, T* destination, int stride = 1, int component = 0) const {
         const auto step = static_cast<std::size_t>(stride);
         hdk_double::for_each_page(start, count, [&](GA_Offset offset, std::size_t first, std::size_t piece) {
             if (step == 1 && is_exact())
                 std::memcpy(static_cast<void*>(destination + first), attribute_->place(offset), piece * sizeof(T));
             else
                 for (std::size_t k = 0; k < piece; ++k)
-                    destination[(first + k) * step] = value(offset + static_cast<GA_Offset>(k));
+                    destination[(first + k) * step] = value(offset + static_cast<GA_Offset>(k), component);
         });
     }
 
@@ -83,10 +83,10 @@ class GA_ROHandleT {
         return attribute_->getTupleSize() == Parts::count &&
                hdk_double::is_stored_as<typename Parts::Base>(attribute_->storage());
     }
-    T value(GA_Offset offset) const {
+    T value(GA_Offset offset, int component) const {
         T result{};
         for (int c = 0; c < Parts::count; ++c)
-            Parts::at(result, c) = static_cast<typename Parts::Base>(attribute_->number(offset, c));
+            Parts::at(result, c) = static_cast<typename Parts::Base>(attribute_->number(offset, component + c));
         return result;
     }
 
@@ -110,23 +110,23 @@ class GA_RWHandleT : public GA_ROHandleT<T> {
 
     void set(GA_Offset offset, const T& value) const {
         GA_Attribute::count_single_access();
-        store(offset, value);
+        store(offset, value, 0);
     }
-    void setBlock(GA_Offset start, GA_Size count, const T* source, int stride = 1) const {
+    void setBlock(GA_Offset start, GA_Size count, const T* source, int stride = 1, int component = 0) const {
         const auto step = static_cast<std::size_t>(stride);
         hdk_double::for_each_page(start, count, [&](GA_Offset offset, std::size_t first, std::size_t piece) {
             if (step == 1 && this->is_exact())
                 std::memcpy(writable_->place(offset), static_cast<const void*>(source + first), piece * sizeof(T));
             else
                 for (std::size_t k = 0; k < piece; ++k)
-                    store(offset + static_cast<GA_Offset>(k), source[(first + k) * step]);
+                    store(offset + static_cast<GA_Offset>(k), source[(first + k) * step], component);
         });
     }
 
  private:
-    void store(GA_Offset offset, const T& value) const {
+    void store(GA_Offset offset, const T& value, int component) const {
         for (int c = 0; c < Parts::count; ++c)
-            writable_->set_number(offset, c, static_cast<double>(Parts::at(value, c)));
+            writable_->set_number(offset, component + c, static_cast<double>(Parts::at(value, c)));
     }
 
     GA_Attribute* writable_ = nullptr;

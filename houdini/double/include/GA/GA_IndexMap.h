@@ -11,11 +11,11 @@ class GA_IndexMap {
     GA_Size offsetSize() const { return static_cast<GA_Size>(indices_.size()); }
     GA_Offset offsetFromIndex(GA_Index index) const { return offsets_[static_cast<std::size_t>(index)]; }
     GA_Index indexFromOffset(GA_Offset offset) const { return indices_[static_cast<std::size_t>(offset)]; }
-    bool isOffsetActive(GA_Offset offset) const {
-        return offset >= 0 && offset < offsetSize() && indexFromOffset(offset) >= 0;
-    }
 
     // The double's own.
+    bool is_active(GA_Offset offset) const {
+        return offset >= 0 && offset < offsetSize() && indexFromOffset(offset) >= 0;
+    }
     GA_Offset append(GA_Size count);
     void remove(GA_Offset offset);
     void clear();

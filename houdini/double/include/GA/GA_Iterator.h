@@ -7,7 +7,8 @@
 class GA_Range {
  public:
     explicit GA_Range(const GA_IndexMap& map, const GA_ElementGroup* group = nullptr) : map_(&map), group_(group) {}
-    GA_Size getEntries() const;
+
+    // The double's own.
     const GA_IndexMap& map() const { return *map_; }
     const GA_ElementGroup* group() const { return group_; }
 

@@ -3,15 +3,17 @@
 
 #include <memory>
 
+#include "GA/GA_PrimitiveTypeId.h"
 #include "GA/GA_Types.h"
 
 class GA_Detail;
 
 class GA_Primitive {
  public:
-    GA_Primitive(const GA_Detail& detail, GA_Offset first_vertex, GA_Size vertex_count, bool closed);
+    GA_Primitive(const GA_Detail& detail, const GA_PrimitiveTypeId& type, GA_Offset first_vertex, GA_Size vertex_count,
+                 bool closed);
     virtual ~GA_Primitive() = default;
-    virtual GA_PrimitiveTypeId getTypeId() const { return GA_PRIMPOLY; }
+    const GA_PrimitiveTypeId& getTypeId() const { return type_; }
     GA_Size getVertexCount() const { return vertex_count_; }
     GA_Offset getPointOffset(GA_Size i) const;
 
@@ -20,6 +22,7 @@ class GA_Primitive {
 
  private:
     const GA_Detail* detail_;
+    GA_PrimitiveTypeId type_;
     GA_Offset first_vertex_;
     GA_Size vertex_count_;
     bool closed_;

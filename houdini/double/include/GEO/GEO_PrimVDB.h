@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "GA/GA_Primitive.h"
+#include "GA/GA_PrimitiveTypes.h"
 #include "UT/UT_BoundingBox.h"
 
 // A function of space in place of a grid.
@@ -12,9 +13,8 @@ class GEO_PrimVDB : public GA_Primitive {
  public:
     using Field = std::function<fpreal(const UT_Vector3&)>;
     GEO_PrimVDB(const GA_Detail& detail, UT_BoundingBox box, bool is_sdf, Field field)
-        : GA_Primitive(detail, 0, 0, false), box_(box), is_sdf_(is_sdf), field_(std::move(field)) {}
+        : GA_Primitive(detail, GA_PRIMVDB, 0, 0, false), box_(box), is_sdf_(is_sdf), field_(std::move(field)) {}
 
-    GA_PrimitiveTypeId getTypeId() const override { return GA_PRIMVDB; }
     bool isSDF() const { return is_sdf_; }
     fpreal getValueF(const UT_Vector3& position) const { return field_(position); }
     bool getBBox(UT_BoundingBox* box) const {

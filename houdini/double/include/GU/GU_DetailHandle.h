@@ -13,9 +13,20 @@ class GU_DetailHandle {
     bool isNull() const { return !detail_; }
     bool isValid() const { return !isNull(); }
     const GU_Detail* gdp() const { return detail_.get(); }
-    GU_Detail* gdpNC() const { return detail_.get(); }
+    GU_Detail* gdpNC() { return detail_.get(); }
 
  private:
     std::shared_ptr<GU_Detail> detail_;
 };
-using GU_ConstDetailHandle = GU_DetailHandle;
+
+class GU_ConstDetailHandle {
+ public:
+    GU_ConstDetailHandle() = default;
+    GU_ConstDetailHandle(const GU_DetailHandle& handle) : handle_(handle) {}
+    bool isNull() const { return handle_.isNull(); }
+    bool isValid() const { return handle_.isValid(); }
+    const GU_Detail* gdp() const { return handle_.gdp(); }
+
+ private:
+    GU_DetailHandle handle_;
+};

@@ -9,7 +9,7 @@ class OP_Context {
     fpreal getTime() const { return time_; }
     void setTime(fpreal time) { time_ = time; }
     fpreal getFloatFrame() const { return CHgetManager()->getSample(time_); }
-    void setFrame(fpreal frame) { time_ = CHgetManager()->getTime(frame); }
+    void setFrame(fpreal frame) { time_ = CHgetManager()->time_of_sample(frame); }
 
  private:
     fpreal time_;

@@ -2,9 +2,8 @@
 #pragma once
 
 #include "SYS/SYS_Version.h"
-#if SYS_VERSION_MAJOR_INT < 21
-#error "OP_DataTypes.h came with Houdini 21"
-#endif
 
+#if SYS_VERSION_MAJOR_INT >= 21
 using OP_InputIdx = int;
 using OP_OutputIdx = int;
+#endif

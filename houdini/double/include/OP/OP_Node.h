@@ -6,23 +6,22 @@
 #include <vector>
 
 #include "OP/OP_Context.h"
+#include "OP/OP_DataTypes.h"
 #include "OP/OP_Error.h"
 #include "OP/OP_Parameters.h"
 #include "SYS/SYS_Version.h"
+#include "UT/UT_ErrorManager.h"
 #include "UT/UT_InfoTree.h"
 
 #if SYS_VERSION_MAJOR_INT < 21
 using OP_InputIdx = unsigned;
-using OP_OutputIdx = unsigned;
-#else
-#include "OP/OP_DataTypes.h"
 #endif
 
 class OP_Network;
 class OP_Operator;
 class SOP_Node;
 
-class OP_Flags {
+class OP_NodeFlags {
  public:
     void setTimeDep(bool yes) { is_time_dependent_ = yes; }
     bool getTimeDep() const { return is_time_dependent_; }
@@ -33,11 +32,11 @@ class OP_Flags {
 
 class OP_NodeInfoTreeParms {
  public:
-    explicit OP_NodeInfoTreeParms(const OP_Context& context) : context_(context) {}
-    fpreal getTime() const { return context_.getTime(); }
+    explicit OP_NodeInfoTreeParms(fpreal time) : time_(time) {}
+    fpreal getTime() const { return time_; }
 
  private:
-    OP_Context context_;
+    fpreal time_;
 };
 
 class OP_Node : public OP_Parameters {
@@ -45,10 +44,10 @@ class OP_Node : public OP_Parameters {
     OP_Node(OP_Network* parent, const char* name, OP_Operator* entry);
     ~OP_Node() override;
 
-    const UT_StringHolder& getName() const { return name_; }
+    const UT_String& getName() const { return name_; }
     OP_Operator* getOperator() const { return operator_; }
-    OP_Flags& flags() { return flags_; }
-    const OP_Flags& flags() const { return flags_; }
+    OP_NodeFlags& flags() { return flags_; }
+    const OP_NodeFlags& flags() const { return flags_; }
     virtual SOP_Node* castToSOPNode() { return nullptr; }
 
     OP_Node* getInput(OP_InputIdx index) const;
@@ -56,7 +55,7 @@ class OP_Node : public OP_Parameters {
     OP_ERROR setInput(OP_InputIdx index, OP_Node* input);
     virtual const char* inputLabel(OP_InputIdx index) const;
 
-    void forceRecook(bool even_if_locked = true);
+    void forceRecook();
     bool isCooking(bool include_multithreaded = false) const;
     UT_ErrorSeverity error() const { return errors_.getSeverity(); }
     virtual void fillInfoTreeNodeSpecific(UT_InfoTree&, const OP_NodeInfoTreeParms&) {}
@@ -72,7 +71,7 @@ class OP_Node : public OP_Parameters {
     void note_time_dependent_input() { reads_time_ = true; }
 
  protected:
-    virtual OP_ERROR cookMe(OP_Context& context) = 0;
+    virtual OP_ERROR cook_me(OP_Context& context) = 0;
     void parameter_changed() override { is_dirty_ = true; }
     UT_ErrorManager& error_manager() { return errors_; }
 
@@ -81,7 +80,7 @@ class OP_Node : public OP_Parameters {
 
     UT_StringHolder name_;
     OP_Operator* operator_;
-    OP_Flags flags_;
+    OP_NodeFlags flags_;
     std::vector<OP_Node*> inputs_;
     std::vector<exint> input_cook_counts_;
     std::vector<bool> locked_;

@@ -4,7 +4,7 @@
 #include "OP/OP_Node.h"
 
 using OP_Constructor = OP_Node* (*)(OP_Network*, const char*, OP_Operator*);
-enum OP_OperatorFlag { OP_FLAG_NETWORK = 0x1, OP_FLAG_GENERATOR = 0x2, OP_FLAG_UNORDERED = 0x4, OP_FLAG_OUTPUT = 0x40 };
+enum { OP_FLAG_NETWORK = 0x1, OP_FLAG_GENERATOR = 0x2, OP_FLAG_UNORDERED = 0x4, OP_FLAG_OUTPUT = 0x40 };
 
 class OP_Operator {
  public:
@@ -14,12 +14,12 @@ class OP_Operator {
                 const char* tab_submenu_path = nullptr);
     virtual ~OP_Operator() = default;
 
-    const UT_StringHolder& getName() const { return name_; }
-    const UT_StringHolder& getEnglish() const { return english_; }
     void setIconName(const char* icon) { icon_ = icon; }
-    const UT_StringHolder& getIconName() const { return icon_; }
 
     // The double's own.
+    const UT_StringHolder& name() const { return name_; }
+    const UT_StringHolder& english() const { return english_; }
+    const UT_StringHolder& icon() const { return icon_; }
     OP_Node* construct(OP_Network* network, const char* name) { return construct_(network, name, this); }
     const PRM_Template* templates() const { return templates_; }
     unsigned min_sources() const { return min_sources_; }

@@ -1,6 +1,7 @@
 // Of the double, not of the HDK: houdini/double/PROVENANCE.md.
 #pragma once
 
+#include <iosfwd>
 #include <map>
 #include <memory>
 #include <string>
@@ -9,8 +10,8 @@
 
 class OP_OperatorTable {
  public:
-    bool addOperator(OP_Operator* entry);
-    OP_Operator* getOperator(const UT_StringRef& name) const;
+    bool addOperator(OP_Operator* entry, std::ostream* errors = nullptr);
+    OP_Operator* getOperator(const char* name) const;
 
     // The double's own.
     const std::map<std::string, std::unique_ptr<OP_Operator>>& operators() const { return operators_; }

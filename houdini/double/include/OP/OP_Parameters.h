@@ -19,10 +19,8 @@ class OP_Parameters {
     fpreal evalFloat(const UT_StringRef& name, int component, fpreal time) const;
     exint evalInt(const UT_StringRef& name, int component, fpreal time) const;
     void evalString(UT_String& value, const UT_StringRef& name, int component, fpreal time) const;
-    fpreal evalFloatInst(const UT_StringRef& name, const int* instance, int component, fpreal time,
-                         int nest_level = 1) const;
-    exint evalIntInst(const UT_StringRef& name, const int* instance, int component, fpreal time,
-                      int nest_level = 1) const;
+    fpreal evalFloatInst(const UT_StringRef& name, const int* instance, int component, fpreal time) const;
+    exint evalIntInst(const UT_StringRef& name, const int* instance, int component, fpreal time) const;
     bool isParmTimeDependent(const UT_StringRef& name, int component = -1) const;
 
     void setFloat(const UT_StringRef& name, int component, fpreal time, fpreal value);

@@ -6,7 +6,12 @@
 class PRM_Parm;
 class PRM_SpareData;
 
-enum PRM_ChoiceListType { PRM_CHOICELIST_SINGLE = 0x1, PRM_CHOICELIST_REPLACE = 0x2, PRM_CHOICELIST_TOGGLE = 0x4 };
+enum PRM_ChoiceListType {
+    PRM_CHOICELIST_REPLACE = 0x0001,
+    PRM_CHOICELIST_TOGGLE = 0x0002,
+    PRM_CHOICELIST_EXCLUSIVE = 0x1000,
+    PRM_CHOICELIST_SINGLE = PRM_CHOICELIST_EXCLUSIVE | PRM_CHOICELIST_REPLACE
+};
 
 // Fills `names`, at most `room` of them with the closing one that has no token.
 using PRM_ChoiceGenFunc = void (*)(void* data, PRM_Name* names, int room, const PRM_SpareData*, const PRM_Parm*);

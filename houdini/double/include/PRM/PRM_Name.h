@@ -9,7 +9,8 @@
 class PRM_Name {
  public:
     PRM_Name() = default;  // the end of a list
-    explicit PRM_Name(const char* token, const char* label = nullptr) : token_(token), label_(label ? label : token) {}
+    explicit PRM_Name(const char* token, const char* label = nullptr, int /*flags*/ = 0)
+        : token_(token), label_(label ? label : token) {}
     void setTokenAndLabel(const char* token, const char* label) {
         copies_ = std::make_shared<const std::pair<std::string, std::string>>(token, label);
         token_ = copies_->first.c_str();

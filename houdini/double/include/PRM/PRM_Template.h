@@ -5,11 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "PRM/PRM_Callback.h"
 #include "PRM/PRM_ChoiceList.h"
-#include "SYS/SYS_Types.h"
-
-class PRM_Template;
-using PRM_Callback = int (*)(void* data, int index, fpreal64 time, const PRM_Template* parm);
 
 // A row of a panel. A list of them ends with one that was made without arguments.
 class PRM_Template {
@@ -17,9 +14,6 @@ class PRM_Template {
     enum class Kind { end, number, whole, toggle, ordinal, text, button, multi, ornament };
 
     PRM_Template() = default;
-    const char* getToken() const { return name.c_str(); }
-    const char* getLabel() const { return label.c_str(); }
-    int getVectorSize() const { return size; }
 
     // The double's own: what the dialog script said.
     Kind kind = Kind::end;
@@ -30,6 +24,6 @@ class PRM_Template {
     double minimum = 0.0, maximum = 0.0;
     bool is_minimum_strict = false, is_maximum_strict = false, has_range = false;
     std::vector<PRM_Template> children;  // of a multiparm; their names have a #
-    PRM_Callback callback = nullptr;
+    PRM_Callback callback;
     PRM_ChoiceList* choices = nullptr;
 };

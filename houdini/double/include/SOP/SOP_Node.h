@@ -4,6 +4,7 @@
 #include "GU/GU_DetailHandle.h"
 #include "OP/OP_Node.h"
 #include "SOP/SOP_Error.h"
+#include "SYS/SYS_Visibility.h"
 
 class OP_OperatorTable;
 class SOP_NodeVerb;
@@ -35,9 +36,9 @@ class SOP_Node : public OP_Node {
 
  protected:
     virtual OP_ERROR cookMySop(OP_Context& context) = 0;
-    OP_ERROR cookMe(OP_Context& context) override;
+    OP_ERROR cook_me(OP_Context& context) override;
     OP_ERROR cookMyselfAsVerb(OP_Context& context);
-    OP_ERROR duplicateSource(OP_InputIdx index, OP_Context& context, GU_Detail* destination = nullptr);
+    OP_ERROR duplicateSource(OP_InputIdx index, OP_Context& context);
 
     void addError(int code, const char* text = nullptr) { error_manager().add(UT_ERROR_ABORT, code, text); }
     void addWarning(int code, const char* text = nullptr) { error_manager().add(UT_ERROR_WARNING, code, text); }

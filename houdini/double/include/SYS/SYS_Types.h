@@ -10,5 +10,3 @@ using exint = std::int64_t;
 using fpreal32 = float;
 using fpreal64 = double;
 using fpreal = double;
-
-#define SYS_VISIBILITY_EXPORT __attribute__((visibility("default")))

@@ -3,17 +3,19 @@
 
 #include "UT/UT_Vector3.h"
 
-class UT_BoundingBox {
+template <typename T>
+class UT_BoundingBoxT {
  public:
-    UT_BoundingBox() = default;
-    UT_BoundingBox(const UT_Vector3& low, const UT_Vector3& high) : low_(low), high_(high) {}
-    fpreal32 xmin() const { return low_.x(); }
-    fpreal32 ymin() const { return low_.y(); }
-    fpreal32 zmin() const { return low_.z(); }
-    fpreal32 xmax() const { return high_.x(); }
-    fpreal32 ymax() const { return high_.y(); }
-    fpreal32 zmax() const { return high_.z(); }
+    UT_BoundingBoxT() = default;
+    UT_BoundingBoxT(const UT_Vector3T<T>& low, const UT_Vector3T<T>& high) : low_(low), high_(high) {}
+    T xmin() const { return low_.x(); }
+    T ymin() const { return low_.y(); }
+    T zmin() const { return low_.z(); }
+    T xmax() const { return high_.x(); }
+    T ymax() const { return high_.y(); }
+    T zmax() const { return high_.z(); }
 
  private:
-    UT_Vector3 low_, high_;
+    UT_Vector3T<T> low_, high_;
 };
+using UT_BoundingBox = UT_BoundingBoxT<float>;

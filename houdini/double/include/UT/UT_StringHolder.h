@@ -16,8 +16,6 @@ class UT_StringHolder {
     const char* c_str() const { return text_.c_str(); }
     const char* buffer() const { return text_.c_str(); }
     operator const char*() const { return text_.c_str(); }
-    exint length() const { return static_cast<exint>(text_.size()); }
-    bool isstring() const { return !text_.empty(); }
     std::string toStdString() const { return text_; }
     bool operator==(const UT_StringHolder& other) const { return text_ == other.text_; }
     bool operator!=(const UT_StringHolder& other) const { return text_ != other.text_; }
@@ -29,4 +27,9 @@ class UT_StringHolder {
 using UT_StringRef = UT_StringHolder;
 using UT_String = UT_StringHolder;
 
+namespace UT {
+namespace Literal {
 inline UT_StringHolder operator""_sh(const char* text, std::size_t length) { return std::string(text, length); }
+}  // namespace Literal
+}  // namespace UT
+using namespace UT::Literal;
