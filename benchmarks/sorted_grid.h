@@ -27,7 +27,8 @@ class SortedGrid {
           sorted_id_(fluid.size()),
           key_(fluid.size()),
           order_(fluid.size()),
-          density_(fluid.size()) {
+          density_(fluid.size()),
+          pressure_(fluid.size()) {
         for (std::size_t i = 0; i < fluid.size(); ++i) id_[i] = static_cast<std::uint32_t>(i);
         constants_.particle_count = static_cast<uint>(fluid.size());
         fit();
@@ -45,15 +46,15 @@ class SortedGrid {
     void sum_density() {
         for (uint i = 0; i < constants_.particle_count; ++i)
             ::density(i, constants_, sorted_position_.data(), sorted_velocity_.data(), cell_start_.data(),
-                      density_.data(), packed_position_.data(), packed_velocity_.data());
+                      density_.data(), packed_position_.data(), packed_velocity_.data(), pressure_.data());
     }
 
     // Where cells start, key and order, the two lists of the sort, and the second copy of what is reordered.
     std::size_t grid_bytes() const {
         return cell_start_.size() * 4 + position_.size() * (4 + 4 + 2 * 8 + (16 + 16 + 4));
     }
-    // Position and velocity as they are and packed, acceleration, density, id.
-    std::size_t particle_bytes() const { return position_.size() * (5 * 16 + 4 + 4); }
+    // Position and velocity as they are and packed, acceleration, density, pressure, id.
+    std::size_t particle_bytes() const { return position_.size() * (5 * 16 + 3 * 4); }
 
     std::vector<float> density() const {
         std::vector<float> values(density_.size());
@@ -91,7 +92,7 @@ class SortedGrid {
     std::vector<float4> position_, velocity_, sorted_position_, sorted_velocity_, packed_position_, packed_velocity_;
     std::vector<float4> acceleration_;
     std::vector<std::uint32_t> id_, sorted_id_, key_, order_, cell_start_;
-    std::vector<float> density_;
+    std::vector<float> density_, pressure_;
 };
 
 }  // namespace fontana

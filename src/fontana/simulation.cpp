@@ -299,7 +299,7 @@ void Simulation::read_attribute(const std::string& name, void* out, std::size_t 
     if (name == "velocity") backend.launch(Kernel::vectors_by_id, count, {n, p.id(), p.velocity(), *sorted});
     if (name == "acceleration") backend.launch(Kernel::vectors_by_id, count, {n, p.id(), p.acceleration(), *sorted});
     if (name == "density") backend.launch(Kernel::words_by_id, count, {n, p.id(), p.density(), *sorted});
-    if (name == "pressure") backend.launch(Kernel::fourth_by_id, count, {n, p.id(), p.packed_velocity(), *sorted});
+    if (name == "pressure") backend.launch(Kernel::words_by_id, count, {n, p.id(), p.pressure(), *sorted});
     if (name == "mass") backend.launch(Kernel::fourth_by_id, count, {n, p.id(), p.position(), *sorted});
     if (name == "id") backend.launch(Kernel::words_by_id, count, {n, p.id(), p.id(), *sorted});
     if (name == "force") {

@@ -41,7 +41,7 @@ void Simulation::with_sections(CheckpointWriter& writer, const Use& use) {
     writer.section("velocity", state.velocity);
     writer.section("id", state.id);
     writer.section("density", state.density);
-    writer.section("packed_velocity", state.packed_velocity);
+    writer.section("pressure", state.pressure);
     writer.section("acceleration", state.acceleration);
     writer.section("force", state.force_by_id);
     use();
@@ -89,7 +89,7 @@ void Simulation::restore(const Checkpoint& checkpoint) {
     state.velocity = load_array<float4>(checkpoint, "velocity", n);
     state.id = load_array<std::uint32_t>(checkpoint, "id", n);
     state.density = load_array<float>(checkpoint, "density", n);
-    state.packed_velocity = load_array<float4>(checkpoint, "packed_velocity", n);
+    state.pressure = load_array<float>(checkpoint, "pressure", n);
     state.acceleration = load_array<float4>(checkpoint, "acceleration", n);
     state.force_by_id = load_array<float4>(checkpoint, "force", has_force ? n : 0);
     check_ids(state.id);

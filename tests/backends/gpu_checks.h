@@ -93,8 +93,9 @@ class SortChecks {
         const auto keys = queue_.allocate("key", key.size() * 4);
         const auto order = queue_.allocate("order", key.size() * 4);
         const auto start = queue_.allocate("start", (key_count + 1) * 4);
+        const auto rank = queue_.allocate("rank", key.size() * 4);
         queue_.write(*keys, key.data(), key.size() * 4, 0);
-        sort_.sort(queue_, *keys, key.size(), key_count, *order, *start);
+        sort_.sort(queue_, *keys, key.size(), key_count, *order, *start, *rank);
         Sorted sorted{Words(key.size()), Words(key_count + 1)};
         queue_.read(*order, sorted.order.data(), key.size() * 4, 0);
         queue_.read(*start, sorted.start.data(), (key_count + 1) * 4, 0);

@@ -27,6 +27,7 @@ STARTING = (
 )
 WORKING = (
     "clCreateBuffer",
+    "clCreateSubBuffer",
     "clSetKernelArg",
     "clEnqueueNDRangeKernel",
     "clEnqueueFillBuffer",

@@ -98,10 +98,11 @@ void the_caller_may_change() {
 
 void check_sort(RadixSort& sort, ThreadPool& pool, const std::vector<std::uint32_t>& key, std::size_t key_count) {
     std::vector<std::uint32_t> expected(key.size()), order(key.size(), 77), start(key_count + 1, 77);
+    std::vector<RadixSort::Item> scratch(2 * key.size());
     std::iota(expected.begin(), expected.end(), 0u);
     std::stable_sort(expected.begin(), expected.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return key[a] < key[b]; });
-    sort.sort(pool, key.data(), key.size(), key_count, order.data(), start.data());
+    sort.sort(pool, key.data(), key.size(), key_count, order.data(), start.data(), scratch.data());
     CHECK(order == expected);
     std::vector<std::uint32_t> counted(key_count + 1, 0);
     for (const std::uint32_t k : key) ++counted[k + 1];

@@ -102,8 +102,9 @@ Bytes forged(const Bytes& good, Change change) {
 void check_forgeries(const std::string& path, const Bytes& good) {
     using Table = std::vector<format::TableEntry>;
     auto refused = [&](auto change) { return refusal(path, forged(good, change)); };
-    CHECK(contains(refused([](auto& header, Table&) { header.format_version = 2; }), "format 2, but"));
-    CHECK(contains(refused([](auto& header, Table&) { header.format_version = 2; }), "up to format 1"));
+    CHECK(contains(refused([](auto& header, Table&) { header.format_version = 3; }), "format 3, but"));
+    CHECK(contains(refused([](auto& header, Table&) { header.format_version = 3; }), "up to format 2"));
+    CHECK(contains(refused([](auto& header, Table&) { header.format_version = 1; }), "the older Fontana"));
     CHECK(contains(refused([](auto& header, Table&) { header.format_version = 0; }), "no checkpoint format 0"));
     CHECK(contains(refused([](auto& header, Table&) { header.endian_mark = 0x04030201; }), "byte order"));
     CHECK(contains(refused([](auto& header, Table&) { header.section_count = 0xffffffff; }), "the table"));

@@ -117,13 +117,13 @@ std::vector<double> dense_column(Fluid& fluid, const CoarseLevel& level, uint sh
     return column;
 }
 
-void check_level(Fluid& fluid, const CoarseLevel& level, uint shift, const std::vector<float>& stencil) {
+void check_level(Fluid& fluid, const CoarseLevel& level, uint shift, const std::vector<float>& kept) {
     const uint count = coarse_count(level);
     std::vector<std::vector<double>> matrix(count, std::vector<double>(count, 0.0));
     for (uint from = 0; from < count; ++from)
         for (uint s = 0; s < COARSE_STENCIL; ++s)
             matrix[from][coarse_neighbor(level, coarse_cell(level, from), s)] +=
-                static_cast<double>(stencil[from * COARSE_STENCIL + s]);
+                static_cast<double>(coarse_entry(level, kept.data(), coarse_cell(level, from), from, s));
     double largest = 0.0, worst = 0.0;
     for (uint to = 0; to < count; ++to) {
         const std::vector<double> column = dense_column(fluid, level, shift, to);
@@ -146,14 +146,13 @@ void matrices_are_galerkins() {
                         fluid.weight.data(), fluid.neighbor_count.data(), fluid.list.data(), table.data());
 
     const CoarseLevel fine = level_of(2, 2, 2), coarse = level_of(1, 1, 1);
-    std::vector<float> fine_stencil(coarse_count(fine) * COARSE_STENCIL),
-        coarse_stencil(coarse_count(coarse) * COARSE_STENCIL);
+    std::vector<float> fine_matrix(coarse_count(fine) * COARSE_ROW), next_matrix(coarse_count(coarse) * COARSE_ROW);
     for (uint k = 0; k < coarse_count(fine); ++k)
-        coarse_matrix(k, fluid.c, fine, fluid.cell_start.data(), table.data(), fine_stencil.data());
-    check_level(fluid, fine, 1, fine_stencil);
+        coarse_matrix(k, fluid.c, fine, fluid.cell_start.data(), table.data(), fine_matrix.data());
+    check_level(fluid, fine, 1, fine_matrix);
     for (uint k = 0; k < coarse_count(coarse); ++k)
-        coarser_matrix(k, fine, coarse, fine_stencil.data(), coarse_stencil.data());
-    check_level(fluid, coarse, 2, coarse_stencil);
+        coarser_matrix(k, fine, coarse, fine_matrix.data(), next_matrix.data());
+    check_level(fluid, coarse, 2, next_matrix);
 }
 
 }  // namespace

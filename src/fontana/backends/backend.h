@@ -136,6 +136,11 @@ class Backend {
 
     // Zero-filled. Never smaller than 16 bytes, so that an empty array is still a valid argument.
     virtual std::unique_ptr<Buffer> allocate(const std::string& name, std::size_t bytes) = 0;
+    // A part of another buffer as one of its own, which has what that has. `offset`: a multiple of part_alignment. The
+    // whole must outlive it.
+    static constexpr std::size_t part_alignment = 4096;
+    virtual std::unique_ptr<Buffer> part(Buffer& whole, const std::string& name, std::size_t offset,
+                                         std::size_t bytes) = 0;
     virtual void write(Buffer& to, const void* from, std::size_t bytes, std::size_t offset = 0) = 0;
     virtual void read(const Buffer& from, void* to, std::size_t bytes, std::size_t offset = 0) = 0;
     virtual void copy(const Buffer& from, Buffer& to, std::size_t bytes) = 0;
@@ -147,8 +152,10 @@ class Backend {
     virtual std::unique_ptr<CompiledKernel> compile(const KernelText& text) = 0;
 
     // The order that sorts `key` (count values below key_count) stably: order[k] is the old index of the k-th, and
-    // start[key] .. start[key + 1] its range; `start` has key_count + 1 entries.
-    virtual void sort(const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start) = 0;
+    // start[key] .. start[key + 1] its range; `start` has key_count + 1 entries. `scratch` has 16 bytes for each value,
+    // and is the sort's to write to.
+    virtual void sort(const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start,
+                      Buffer& scratch) = 0;
 
     virtual void finish() = 0;
     virtual std::vector<ProfileRow> profile() const = 0;

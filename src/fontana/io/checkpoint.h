@@ -19,7 +19,7 @@
 
 namespace fontana {
 
-constexpr std::uint32_t checkpoint_format_version = 1;
+constexpr std::uint32_t checkpoint_format_version = 2;
 
 // Collects sections and publishes them as `path`, keeping what was there as `path`.previous.
 class CheckpointWriter {

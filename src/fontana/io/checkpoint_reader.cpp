@@ -28,6 +28,9 @@ void check_identity(const Input& file, const Header& header) {
                      ", but this Fontana reads up to format " + std::to_string(checkpoint_format_version) +
                      ": use the newer Fontana that wrote it");
     }
+    if (header.format_version == 1)
+        file.damaged("has checkpoint format 1, and this Fontana reads format " +
+                     std::to_string(checkpoint_format_version) + ": use the older Fontana that wrote it, or run anew");
     if (header.format_version == 0) file.damaged("is damaged: there is no checkpoint format 0");
 }
 

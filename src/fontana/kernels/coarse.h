@@ -16,6 +16,7 @@
 #define COARSE_TABLE 36u    // products of the 8 coarse unknowns that one cell's particles feel, symmetric
 #define COARSE_STENCIL 27u  // a coarse cell and its neighbours; slot (x+1) + 3 (y+1) + 9 (z+1)
 #define COARSE_CENTRE 13u
+#define COARSE_ROW 14u  // entries that are kept: the matrix is symmetric, so those from the centre on will do
 #define COARSE_SMOOTHING 0.6f
 #define COARSE_STRETCH 1.5f  // piecewise constants are too stiff; over-correction makes up for it (Braess 1995)
 #define COARSE_BOTTOM_SWEEPS 20u
@@ -45,6 +46,20 @@ FN CellCoordinates coarse_cell(const CoarseLevel level, uint index) {
 // The cell of a slot of the stencil around `cell`.
 FN uint coarse_neighbor(const CoarseLevel level, CellCoordinates cell, uint slot) {
     return coarse_index(level, cell.x + slot % 3u - 1u, cell.y + slot / 3u % 3u - 1u, cell.z + slot / 9u - 1u);
+}
+
+FN float coarse_diagonal(GLOBAL const float* RESTRICT matrix, uint index) { return matrix[index * COARSE_ROW]; }
+
+// The entry of a slot in the row of `cell`, the cell numbered `index`.
+FN float coarse_entry(const CoarseLevel level, GLOBAL const float* RESTRICT matrix, CellCoordinates cell, uint index,
+                      uint slot) {
+    if (slot >= COARSE_CENTRE) return matrix[index * COARSE_ROW + slot - COARSE_CENTRE];
+    return matrix[coarse_neighbor(level, cell, slot) * COARSE_ROW + COARSE_CENTRE - slot];
+}
+
+// Adds to the row's entry of a slot, if it is kept.
+FN void add_coarse_entry(GLOBAL float* RESTRICT row, uint slot, float value) {
+    if (slot >= COARSE_CENTRE) row[slot - COARSE_CENTRE] += value;
 }
 
 // The mass where the particle takes part, else 0.
@@ -134,18 +149,18 @@ FN void add_products(GLOBAL float* RESTRICT row, GLOBAL const float* RESTRICT pr
     for (uint q = 0u; q < 8u; ++q) {
         const int to_x = q & 1u ? coarse_other(x) : coarse_home(x), to_y = q & 2u ? coarse_other(y) : coarse_home(y),
                   to_z = q & 4u ? coarse_other(z) : coarse_home(z);
-        row[to_x + 1 + 3 * (to_y + 1) + 9 * (to_z + 1)] += products[coarse_table_index(p, q)];
+        add_coarse_entry(row, (uint)(to_x + 1 + 3 * (to_y + 1) + 9 * (to_z + 1)), products[coarse_table_index(p, q)]);
     }
 }
 
 // The matrix of the finest coarse level. One thread a coarse cell: the 4 x 4 x 4 cells whose particles feel it.
 KERNEL void coarse_matrix(THREAD_ARG const StepConstants c, const CoarseLevel level,
                           GLOBAL const uint* RESTRICT cell_start, GLOBAL const float* RESTRICT table,
-                          GLOBAL float* RESTRICT stencil) {
+                          GLOBAL float* RESTRICT matrix) {
     const uint index = THREAD_INDEX;
     if (index >= coarse_count(level)) return;
-    GLOBAL float* RESTRICT row = stencil + index * COARSE_STENCIL;
-    for (uint s = 0u; s < COARSE_STENCIL; ++s) row[s] = 0.0f;
+    GLOBAL float* RESTRICT row = matrix + index * COARSE_ROW;
+    for (uint k = 0u; k < COARSE_ROW; ++k) row[k] = 0.0f;
     const CellCoordinates home = coarse_cell(level, index);
     if (!is_occupied(c, home, cell_start)) return;
     for (int z = -1; z <= 2; ++z)
@@ -155,7 +170,7 @@ KERNEL void coarse_matrix(THREAD_ARG const StepConstants c, const CoarseLevel le
                 if (cell_start[key + 1u] - begin >= COARSE_LEAST)
                     add_products(row, table + begin / COARSE_LEAST * COARSE_TABLE, x, y, z);
             }
-    row[COARSE_CENTRE] *= 1.0001f;
+    row[0] *= 1.0001f;
 }
 
 // How a level's cells come together in the next: along an axis two by two, or not at all.
@@ -189,21 +204,23 @@ FN uint parent_side(uint child, uint merged, uint side) { return merged ? ((chil
 
 // The same for the next level, from the one below.
 KERNEL void coarser_matrix(THREAD_ARG const CoarseLevel child, const CoarseLevel level,
-                           GLOBAL const float* RESTRICT child_stencil, GLOBAL float* RESTRICT stencil) {
+                           GLOBAL const float* RESTRICT child_matrix, GLOBAL float* RESTRICT matrix) {
     const uint index = THREAD_INDEX;
     if (index >= coarse_count(level)) return;
-    GLOBAL float* RESTRICT row = stencil + index * COARSE_STENCIL;
-    for (uint s = 0u; s < COARSE_STENCIL; ++s) row[s] = 0.0f;
+    GLOBAL float* RESTRICT row = matrix + index * COARSE_ROW;
+    for (uint k = 0u; k < COARSE_ROW; ++k) row[k] = 0.0f;
     const CellCoordinates home = coarse_cell(level, index);
     const Merging merging = merging_of(child, level);
     for (uint k = 0u; k < child_count(merging); ++k) {
         const CellCoordinates cell = child_cell(merging, home, k);
-        GLOBAL const float* RESTRICT from =
-            child_stencil + coarse_index(child, cell.x, cell.y, cell.z) * COARSE_STENCIL;
-        if (from[COARSE_CENTRE] == 0.0f) continue;
-        for (uint s = 0u; s < COARSE_STENCIL; ++s)
-            row[parent_side(cell.x, merging.x, s % 3u) + 3u * parent_side(cell.y, merging.y, s / 3u % 3u) +
-                9u * parent_side(cell.z, merging.z, s / 9u)] += from[s];
+        const uint from = coarse_index(child, cell.x, cell.y, cell.z);
+        if (coarse_diagonal(child_matrix, from) == 0.0f) continue;
+        for (uint slot = 0u; slot < COARSE_STENCIL; ++slot) {
+            const uint to = parent_side(cell.x, merging.x, slot % 3u) +
+                            3u * parent_side(cell.y, merging.y, slot / 3u % 3u) +
+                            9u * parent_side(cell.z, merging.z, slot / 9u);
+            add_coarse_entry(row, to, coarse_entry(child, child_matrix, cell, from, slot));
+        }
     }
 }
 
@@ -212,9 +229,9 @@ KERNEL void coarser_matrix(THREAD_ARG const CoarseLevel child, const CoarseLevel
 FN bool is_pressed(float weight, float residual, float u) { return weight > 0.0f && (residual > 0.0f || u > 0.0f); }
 
 // b, and the smoother's first step from zero, z = omega b / D.
-FN void store_right_side(uint index, float sum, GLOBAL const float* RESTRICT stencil, GLOBAL float* RESTRICT b,
+FN void store_right_side(uint index, float sum, GLOBAL const float* RESTRICT matrix, GLOBAL float* RESTRICT b,
                          GLOBAL float* RESTRICT guess) {
-    const float diagonal = stencil[index * COARSE_STENCIL + COARSE_CENTRE];
+    const float diagonal = coarse_diagonal(matrix, index);
     b[index] = sum;
     guess[index] = diagonal > 0.0f ? COARSE_SMOOTHING * sum / diagonal : 0.0f;
 }
@@ -223,7 +240,7 @@ FN void store_right_side(uint index, float sum, GLOBAL const float* RESTRICT ste
 KERNEL void coarse_restrict(THREAD_ARG const StepConstants c, const CoarseLevel level,
                             GLOBAL const uint* RESTRICT cell_start, GLOBAL const float* RESTRICT weight,
                             GLOBAL const float* RESTRICT residual, GLOBAL const float* RESTRICT u,
-                            GLOBAL const float* RESTRICT stencil, GLOBAL float* RESTRICT b,
+                            GLOBAL const float* RESTRICT matrix, GLOBAL float* RESTRICT b,
                             GLOBAL float* RESTRICT guess) {
     const uint index = THREAD_INDEX;
     if (index >= coarse_count(level)) return;
@@ -236,13 +253,13 @@ KERNEL void coarse_restrict(THREAD_ARG const StepConstants c, const CoarseLevel 
         for (uint i = begin; i < end; ++i)
             if (is_pressed(weight[i], residual[i], u[i])) sum += residual[i];
     }
-    store_right_side(index, sum, stencil, b, guess);
+    store_right_side(index, sum, matrix, b, guess);
 }
 
 // Down: what is left of b after the first step, summed into the next level's. One thread a cell of the next level.
 KERNEL void coarse_down(THREAD_ARG const CoarseLevel child, const CoarseLevel level,
-                        GLOBAL const float* RESTRICT child_stencil, GLOBAL const float* RESTRICT child_b,
-                        GLOBAL const float* RESTRICT child_guess, GLOBAL const float* RESTRICT stencil,
+                        GLOBAL const float* RESTRICT child_matrix, GLOBAL const float* RESTRICT child_b,
+                        GLOBAL const float* RESTRICT child_guess, GLOBAL const float* RESTRICT matrix,
                         GLOBAL float* RESTRICT b, GLOBAL float* RESTRICT guess) {
     const uint index = THREAD_INDEX;
     if (index >= coarse_count(level)) return;
@@ -252,16 +269,17 @@ KERNEL void coarse_down(THREAD_ARG const CoarseLevel child, const CoarseLevel le
     for (uint k = 0u; k < child_count(merging); ++k) {
         const CellCoordinates cell = child_cell(merging, home, k);
         const uint from = coarse_index(child, cell.x, cell.y, cell.z);
-        GLOBAL const float* RESTRICT row = child_stencil + from * COARSE_STENCIL;
-        if (row[COARSE_CENTRE] == 0.0f) continue;
+        if (coarse_diagonal(child_matrix, from) == 0.0f) continue;
         sum += child_b[from];
-        for (uint s = 0u; s < COARSE_STENCIL; ++s) sum -= row[s] * child_guess[coarse_neighbor(child, cell, s)];
+        for (uint slot = 0u; slot < COARSE_STENCIL; ++slot)
+            sum -=
+                coarse_entry(child, child_matrix, cell, from, slot) * child_guess[coarse_neighbor(child, cell, slot)];
     }
-    store_right_side(index, sum, stencil, b, guess);
+    store_right_side(index, sum, matrix, b, guess);
 }
 
 // The coarsest level, 2 x 2 x 2 unknowns: Gauss-Seidel, forwards and backwards. One thread.
-KERNEL void coarse_bottom(THREAD_ARG const CoarseLevel level, GLOBAL const float* RESTRICT stencil,
+KERNEL void coarse_bottom(THREAD_ARG const CoarseLevel level, GLOBAL const float* RESTRICT matrix,
                           GLOBAL const float* RESTRICT b, GLOBAL float* RESTRICT z) {
     if (THREAD_INDEX != 0u) return;
     const uint count = coarse_count(level);
@@ -270,36 +288,34 @@ KERNEL void coarse_bottom(THREAD_ARG const CoarseLevel level, GLOBAL const float
         for (uint k = 0u; k < count; ++k) {
             const uint index = sweep % 2u == 0u ? k : count - 1u - k;
             const CellCoordinates cell = coarse_cell(level, index);
-            const float diagonal = stencil[index * COARSE_STENCIL + COARSE_CENTRE];
+            const float diagonal = coarse_diagonal(matrix, index);
             float left = b[index];
-            for (uint s = 0u; s < COARSE_STENCIL; ++s)
-                if (s != COARSE_CENTRE)
-                    left -= stencil[index * COARSE_STENCIL + s] * z[coarse_neighbor(level, cell, s)];
+            for (uint slot = 0u; slot < COARSE_STENCIL; ++slot)
+                if (slot != COARSE_CENTRE)
+                    left -= coarse_entry(level, matrix, cell, index, slot) * z[coarse_neighbor(level, cell, slot)];
             z[index] = diagonal > 0.0f ? left / diagonal : 0.0f;
         }
 }
 
 // Up: the first step with the next level's correction, smoothed once more.
-KERNEL void coarse_up(THREAD_ARG const CoarseLevel level, const CoarseLevel parent,
-                      GLOBAL const float* RESTRICT stencil, GLOBAL const float* RESTRICT b,
-                      GLOBAL const float* RESTRICT guess, GLOBAL const float* RESTRICT parent_z,
-                      GLOBAL float* RESTRICT z) {
+KERNEL void coarse_up(THREAD_ARG const CoarseLevel level, const CoarseLevel parent, GLOBAL const float* RESTRICT matrix,
+                      GLOBAL const float* RESTRICT b, GLOBAL const float* RESTRICT guess,
+                      GLOBAL const float* RESTRICT parent_z, GLOBAL float* RESTRICT z) {
     const uint index = THREAD_INDEX;
     if (index >= coarse_count(level)) return;
-    GLOBAL const float* RESTRICT row = stencil + index * COARSE_STENCIL;
-    const float diagonal = row[COARSE_CENTRE];
+    const float diagonal = coarse_diagonal(matrix, index);
     z[index] = 0.0f;
     if (diagonal <= 0.0f) return;
     const CellCoordinates cell = coarse_cell(level, index);
     const Merging merging = merging_of(level, parent);
     float left = b[index], own = 0.0f;
-    for (uint s = 0u; s < COARSE_STENCIL; ++s) {
-        const uint from = coarse_neighbor(level, cell, s);
+    for (uint slot = 0u; slot < COARSE_STENCIL; ++slot) {
+        const uint from = coarse_neighbor(level, cell, slot);
         const CellCoordinates there = coarse_cell(level, from);
         const uint above = coarse_index(parent, there.x >> merging.x, there.y >> merging.y, there.z >> merging.z);
         const float value = guess[from] + COARSE_STRETCH * parent_z[above];
-        left -= row[s] * value;
-        if (s == COARSE_CENTRE) own = value;
+        left -= coarse_entry(level, matrix, cell, index, slot) * value;
+        if (slot == COARSE_CENTRE) own = value;
     }
     z[index] = own + COARSE_SMOOTHING * left / diagonal;
 }

@@ -184,16 +184,16 @@ KERNEL void load_warm_start(THREAD_ARG const uint count, GLOBAL const float4* RE
     if (i < count) u[i] = factor[i].w > 0.0f ? velocity[i].w : 0.0f;
 }
 
-// And the pressure that goes with it, Pa: p = rest density * u * relative density^2, into packed_velocity.w.
+// And the pressure that goes with it, Pa: p = rest density * u * relative density^2.
 KERNEL void store_pressure(THREAD_ARG const StepConstants c, GLOBAL const float* RESTRICT u,
                            GLOBAL const float* RESTRICT density_in, GLOBAL float4* RESTRICT velocity,
-                           GLOBAL float4* RESTRICT packed_velocity) {
+                           GLOBAL float* RESTRICT pressure) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
     const float4 v = velocity[i];
     const float relative = density_in[i] * c.inverse_rest_density;
     velocity[i] = MAKE_FLOAT4(v.x, v.y, v.z, u[i]);
-    packed_velocity[i] = MAKE_FLOAT4(v.x, v.y, v.z, c.rest_density * u[i] * relative * relative);
+    pressure[i] = c.rest_density * u[i] * relative * relative;
 }
 
 #endif

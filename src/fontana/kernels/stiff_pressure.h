@@ -39,14 +39,16 @@ FN void store_correction(const StepConstants c, uint i, float delta, float densi
 
 // The relative density there and the correction u += delta / dt^2 (relative - 1), delta (m^2) for a full neighbourhood
 // (Solenthaler and Pajarola 2009, eq. 8). The walls move too: their share at the predicted place is that of the present
-// surfaces. `residual` gets what is above rest density.
+// surfaces. Neighbours are those that are near at `position`, wherever they are predicted to be: the only ones on a
+// list of one's own, but not on a shared one. `residual` gets what is above rest density.
 KERNEL void correct_pressure(THREAD_ARG const StepConstants c, const float delta,
-                             GLOBAL const float4* RESTRICT predicted, GLOBAL const uint* RESTRICT neighbor_count,
-                             GLOBAL const uint* RESTRICT list, GLOBAL const ColliderConstants* RESTRICT collider,
-                             GLOBAL const float4* RESTRICT factor, GLOBAL float* RESTRICT u,
-                             GLOBAL float* RESTRICT residual) {
+                             GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT predicted,
+                             GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
+                             GLOBAL const ColliderConstants* RESTRICT collider, GLOBAL const float4* RESTRICT factor,
+                             GLOBAL float* RESTRICT u, GLOBAL float* RESTRICT residual) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
+    (void)position;
     const float4 x_i = predicted[i];
     float density = x_i.w * kernel_value(c, 0.0f);
     const uint count = list_length(c, neighbor_count[i]);

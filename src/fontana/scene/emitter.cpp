@@ -113,15 +113,11 @@ void Emitter::for_each_point(double spacing, const Visit& visit) const {
     if (is_empty) visit(Vector{0.0, 0.0, 0.0});  // smaller than the spacing: one particle
 }
 
-std::vector<Vector> Emitter::sample(double spacing) const {
-    std::vector<Vector> points;
-    for_each_point(spacing, [&](const Vector& point) {
-        Vector turned = point;
-        if (settings_.type == FONTANA_DISC)
-            for (std::size_t k = 0; k < 3; ++k) turned[k] = point[0] * side_[k] + point[2] * up_[k];
-        points.push_back(turned);
-    });
-    return points;
+Vector Emitter::turned(const Vector& point) const {
+    if (settings_.type != FONTANA_DISC) return point;
+    Vector turned;
+    for (std::size_t k = 0; k < 3; ++k) turned[k] = point[0] * side_[k] + point[2] * up_[k];
+    return turned;
 }
 
 std::uint64_t Emitter::particles_per_batch(double spacing) const {
@@ -160,16 +156,19 @@ void Emitter::emit(std::uint64_t batch, double time, double spacing, double fram
         flown = settings_.speed * std::max(0.0, time - due);
         for (std::size_t k = 0; k < 3; ++k) velocity[k] = settings_.speed * direction_[k];
     }
-    const std::vector<Vector> points = sample(spacing);
-    std::uint64_t particle = batch * points.size();
-    for (const Vector& point : points) {
+    const std::uint64_t count = particles_per_batch(spacing);
+    std::uint64_t particle = batch * count;
+    out.position.reserve(out.position.size() + 3 * count);
+    out.velocity.reserve(out.velocity.size() + 3 * count);
+    for_each_point(spacing, [&](const Vector& untouched) {
+        const Vector point = turned(untouched);
         for (std::size_t k = 0; k < 3; ++k) {
             const double shift = settings_.jitter * spacing * random_shift(index_, particle, k);
             out.position.push_back(static_cast<float>(settings_.centre[k] + point[k] + flown * direction_[k] + shift));
             out.velocity.push_back(static_cast<float>(velocity[k]));
         }
         ++particle;
-    }
+    });
 }
 
 void Emitter::check(double spacing) const {

@@ -36,7 +36,7 @@ class Emitter {
     Lattice lattice(double spacing) const;
     template <typename Visit>
     void for_each_point(double spacing, const Visit& visit) const;
-    std::vector<Vector> sample(double spacing) const;
+    Vector turned(const Vector& point) const;
     double batch_interval(double spacing) const;
     double first_time(double frame_duration) const;
 

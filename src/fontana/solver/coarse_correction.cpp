@@ -27,11 +27,8 @@ bool is_same(const CoarseLevel& a, const CoarseLevel& b) {
 }  // namespace
 
 void CoarseCorrection::reserve(Substep& s) {
-    const std::size_t table_bytes = (s.particles.count() / COARSE_LEAST + 1) * COARSE_TABLE * 4;
-    if (!table_ || table_->bytes() < table_bytes) {
-        weight_ = backend_.allocate("coarse weight", s.particles.count() * 5);
-        table_ = backend_.allocate("coarse products", table_bytes * 5 / 4);
-    }
+    const std::size_t weight_bytes = s.particles.capacity() * 4;
+    if (!weight_ || weight_->bytes() < weight_bytes) weight_ = backend_.allocate("coarse weight", weight_bytes);
     const GridShape& grid = s.neighborhood.shape();
     Bits bits = merged({grid.bits_x, grid.bits_y, grid.bits_z});
     if (!levels_.empty() && is_same(levels_.front().shape, level_of(bits))) return;
@@ -40,7 +37,7 @@ void CoarseCorrection::reserve(Substep& s) {
     for (;;) {
         const CoarseLevel shape = level_of(bits);
         const std::size_t count = coarse_count(shape);
-        levels.push_back({shape, backend_.allocate("coarse matrix", count * COARSE_STENCIL * 4),
+        levels.push_back({shape, backend_.allocate("coarse matrix", count * COARSE_ROW * 4),
                           backend_.allocate("coarse residual", count * 4), backend_.allocate("coarse guess", count * 4),
                           backend_.allocate("coarse correction", count * 4)});
         if (merged(bits) == bits) break;
@@ -49,7 +46,7 @@ void CoarseCorrection::reserve(Substep& s) {
     levels_ = std::move(levels);
 }
 
-void CoarseCorrection::prepare(Substep& s, Operators& operators, Buffer& u) {
+void CoarseCorrection::prepare(Substep& s, Operators& operators, Buffer& u, Buffer& products) {
     reserve(s);
     const auto count = static_cast<std::uint32_t>(s.particles.count());
     const auto cell_count = static_cast<std::uint32_t>(s.neighborhood.shape().cell_count());
@@ -57,37 +54,41 @@ void CoarseCorrection::prepare(Substep& s, Operators& operators, Buffer& u) {
                     {count, s.particles.position(), operators.factor(), operators.rate(), u, *weight_});
     backend_.launch(Kernel::coarse_products, cell_count,
                     {s.constants, cell_count, s.neighborhood.cell_start(), s.particles.position(), operators.factor(),
-                     *weight_, operators.list().count(), operators.list().list(), *table_});
+                     *weight_, operators.list().count(), operators.list().list(), products});
     backend_.launch(Kernel::coarse_matrix, coarse_count(finest()),
-                    {s.constants, finest(), s.neighborhood.cell_start(), *table_, *levels_.front().stencil});
+                    {s.constants, finest(), s.neighborhood.cell_start(), products, *levels_.front().matrix});
     for (std::size_t k = 1; k < levels_.size(); ++k)
         backend_.launch(Kernel::coarser_matrix, coarse_count(levels_[k].shape),
-                        {levels_[k - 1].shape, levels_[k].shape, *levels_[k - 1].stencil, *levels_[k].stencil});
+                        {levels_[k - 1].shape, levels_[k].shape, *levels_[k - 1].matrix, *levels_[k].matrix});
 }
 
 void CoarseCorrection::solve(Substep& s, Buffer& residual, Buffer& u) {
     Level& first = levels_.front();
     backend_.launch(Kernel::coarse_restrict, coarse_count(first.shape),
-                    {s.constants, first.shape, s.neighborhood.cell_start(), *weight_, residual, u, *first.stencil,
+                    {s.constants, first.shape, s.neighborhood.cell_start(), *weight_, residual, u, *first.matrix,
                      *first.b, *first.guess});
     for (std::size_t k = 1; k < levels_.size(); ++k) {
         const Level &child = levels_[k - 1], &level = levels_[k];
         backend_.launch(
             Kernel::coarse_down, coarse_count(level.shape),
-            {child.shape, level.shape, *child.stencil, *child.b, *child.guess, *level.stencil, *level.b, *level.guess});
+            {child.shape, level.shape, *child.matrix, *child.b, *child.guess, *level.matrix, *level.b, *level.guess});
     }
     Level& last = levels_.back();
-    backend_.launch(Kernel::coarse_bottom, 1, {last.shape, *last.stencil, *last.b, *last.z});
+    backend_.launch(Kernel::coarse_bottom, 1, {last.shape, *last.matrix, *last.b, *last.z});
     for (std::size_t k = levels_.size() - 1; k-- > 0;) {
         const Level &level = levels_[k], &parent = levels_[k + 1];
         backend_.launch(Kernel::coarse_up, coarse_count(level.shape),
-                        {level.shape, parent.shape, *level.stencil, *level.b, *level.guess, *parent.z, *level.z});
+                        {level.shape, parent.shape, *level.matrix, *level.b, *level.guess, *parent.z, *level.z});
     }
+}
+
+std::uint64_t CoarseCorrection::product_bytes(std::uint64_t particle_count) {
+    return (particle_count / COARSE_LEAST + 1) * COARSE_TABLE * 4;
 }
 
 std::uint64_t CoarseCorrection::bytes(std::uint64_t particle_count) {
     const std::uint64_t cells = particle_count / 8;  // of the grid; a level has an eighth of the one below
-    return particle_count * 5 + particle_count / COARSE_LEAST * COARSE_TABLE * 5 + cells / 7 * (COARSE_STENCIL + 3) * 4;
+    return particle_count * 4 + cells / 7 * (COARSE_ROW + 3) * 4;
 }
 
 }  // namespace fontana

@@ -15,8 +15,8 @@ class CoarseCorrection {
     explicit CoarseCorrection(Backend& backend) : backend_(backend) {}
 
     // Builds the matrices of all levels for the particles that have pressure `u` or are called on for some; rate() of
-    // the operators is the target of the solve.
-    void prepare(Substep& substep, Operators& operators, Buffer& u);
+    // the operators is the target of the solve. `products` is written to, and done with on return.
+    void prepare(Substep& substep, Operators& operators, Buffer& u, Buffer& products);
     // One V-cycle for the residual; correction() then has the result on the finest level.
     void solve(Substep& substep, Buffer& residual, Buffer& u);
 
@@ -25,19 +25,21 @@ class CoarseCorrection {
     Buffer& weight() { return *weight_; }
     Buffer& correction() { return *levels_.front().z; }
 
+    // Of `products`, and of all else.
+    static std::uint64_t product_bytes(std::uint64_t particle_count);
     static std::uint64_t bytes(std::uint64_t particle_count);
 
  private:
     struct Level {
         CoarseLevel shape;
-        std::unique_ptr<Buffer> stencil, b, guess, z;
+        std::unique_ptr<Buffer> matrix, b, guess, z;
     };
 
     void reserve(Substep& substep);
 
     Backend& backend_;
     std::vector<Level> levels_;  // finest first
-    std::unique_ptr<Buffer> weight_, table_;
+    std::unique_ptr<Buffer> weight_;
 };
 
 }  // namespace fontana

@@ -6,7 +6,7 @@
 #include "solver/coarse_correction.h"
 #include "solver/diagnostics.h"
 #include "solver/methods.h"
-#include "solver/operators.h"
+#include "solver/neighbor_list.h"
 #include "util/error.h"
 
 namespace fontana {
@@ -78,9 +78,10 @@ std::unique_ptr<Method> make_method(const std::string& name, Backend& backend) {
 
 std::uint64_t method_bytes(const std::string& name, std::uint64_t particle_count, std::uint32_t list_group) {
     if (name == "mueller") return 0;
-    const std::uint64_t solve = name == "dfsph" ? 7 * 4 : name == "pcisph" ? 16 + 4 : 0;
-    const std::uint64_t coarse = name == "dfsph" ? CoarseCorrection::bytes(particle_count) : 0;
-    return Operators::bytes(particle_count, list_group) + solve * (particle_count + particle_count / 4) + coarse;
+    const std::uint64_t lists = NeighborList::bytes(particle_count, list_group), u = 4 * particle_count;
+    if (name == "wcsph") return lists + u;
+    if (name == "pcisph") return lists + u + 16 * particle_count;
+    return lists + u + CoarseCorrection::product_bytes(particle_count) + CoarseCorrection::bytes(particle_count);
 }
 
 }  // namespace fontana

@@ -33,7 +33,8 @@ class Dfsph : public Method {
         operators_.begin(s);
         s.choose_time_step();
         operators_.add_forces(s);
-        reserve(s.particles.count());
+        reserve(s.particles.capacity());
+        residual_ = &s.particles.spare_words();
         remove_divergence(s);
         operators_.predict(s);
         solve_density(s);
@@ -51,10 +52,10 @@ class Dfsph : public Method {
     }
 
     void remove_divergence(Substep& s) {
-        backend_.launch(Kernel::divergence_step, s.particles.count(),
-                        {s.constants, k_anderson_relaxation, s.particles.density(), operators_.rate(),
-                         operators_.factor(), operators_.u()});
-        operators_.compute_gradient(s, operators_.u());
+        backend_.launch(
+            Kernel::divergence_step, s.particles.count(),
+            {s.constants, k_anderson_relaxation, s.particles.density(), operators_.rate(), operators_.factor(), u(1)});
+        operators_.compute_gradient(s, u(1));
         operators_.push(s);
     }
 
@@ -70,7 +71,7 @@ class Dfsph : public Method {
         // A GPU would rather run an iteration too many, which changes nothing, than wait for an answer after each.
         const std::uint32_t poll = backend_.device().is_gpu ? 2 : 1;
         with_coarse_ = solver == "multilevel" && s.constants.use_grid;  // without the grid there are no cells to merge
-        if (with_coarse_) coarse_.prepare(s, operators_, u(1));
+        if (with_coarse_) coarse_.prepare(s, operators_, u(1), *workspace_);
         SolveState state{};
         float first_residual = std::numeric_limits<float>::infinity();
         for (std::uint32_t k = 1; k <= most; ++k) {
@@ -122,26 +123,37 @@ class Dfsph : public Method {
     Buffer& u(std::uint32_t k) { return *u_[k % (k_depth + 1)]; }
     Buffer& step(std::uint32_t k) { return *step_[k % (k_depth + 1)]; }
 
-    void reserve(std::size_t particle_count) {
-        if (residual_ && residual_->bytes() >= particle_count * 4) return;
-        const std::size_t bytes = (particle_count + particle_count / 4) * 4;
+    // What the coarse correction keeps before the first iteration and what is kept between iterations lie in the same
+    // memory: the former is used up before the latter is written. Only the first u is needed all along.
+    void reserve(std::size_t particle_capacity) {
+        const std::size_t bytes = particle_capacity * 4;
+        if (state_ && u(1).bytes() >= bytes) return;
+        state_.reset();
+        constexpr std::size_t alignment = Backend::part_alignment, parts = 2 * (k_depth + 1) - 1;
+        const std::size_t part = (bytes + alignment - 1) / alignment * alignment;
+        for (std::unique_ptr<Buffer>& former : step_) former.reset();
+        for (std::unique_ptr<Buffer>& former : u_) former.reset();
+        const std::size_t products = CoarseCorrection::product_bytes(particle_capacity);
+        workspace_ = backend_.allocate("solve", std::max(parts * part, products));
+        std::size_t taken = 0;
         for (std::size_t k = 0; k <= k_depth; ++k) {
-            u_[k] = backend_.allocate("pressure", bytes);
-            step_[k] = backend_.allocate("step", bytes);
+            step_[k] = backend_.part(*workspace_, "step", part * taken++, bytes);
+            u_[k] = k == 1 ? backend_.allocate("pressure", bytes)
+                           : backend_.part(*workspace_, "pressure", part * taken++, bytes);
         }
         sums_ = backend_.allocate("sums", k_lanes * k_sums * 4);
         folded_sums_ = backend_.allocate("folded sums", k_folded_lanes * k_sums * 4);
-        state_ = backend_.allocate("solve state", sizeof(SolveState));
-        residual_ = backend_.allocate("residual", bytes);  // the last: it says that all of them are there
+        state_ = backend_.allocate("solve state", sizeof(SolveState));  // the last: it says that all of them are there
     }
 
     Backend& backend_;
     Operators operators_;
     CoarseCorrection coarse_;
-    std::unique_ptr<Buffer> u_[k_depth + 1], step_[k_depth + 1];
+    std::unique_ptr<Buffer> workspace_, u_[k_depth + 1], step_[k_depth + 1];
     bool with_coarse_ = false;
     Buffer* pressure_ = nullptr;  // the result of the solve, one of u_
-    std::unique_ptr<Buffer> residual_, sums_, folded_sums_, state_;
+    Buffer* residual_ = nullptr;  // lent by the particles
+    std::unique_ptr<Buffer> sums_, folded_sums_, state_;
 };
 
 }  // namespace

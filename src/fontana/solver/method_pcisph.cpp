@@ -23,11 +23,11 @@ class Pcisph : public Method {
         operators_.add_forces(s);
         operators_.predict(s);
         s.place_colliders();
-        reserve(s.particles.count());
+        reserve(s.particles.capacity());
         solve(s);
-        operators_.compute_gradient(s, operators_.u());
+        operators_.compute_gradient(s, *u_);
         operators_.push(s);
-        operators_.finish(s, operators_.u());
+        operators_.finish(s, *u_);
     }
 
  private:
@@ -35,33 +35,35 @@ class Pcisph : public Method {
         const std::size_t count = s.particles.count();
         const double tolerance = density_error_tolerance(s.parameters);
         const auto delta = static_cast<float>(pcisph_delta(s.parameters));
-        operators_.clear_u(s);
+        backend_.launch(Kernel::clear_words, count, {static_cast<std::uint32_t>(count), *u_});
         s.report.converged = false;
         for (std::uint32_t k = 1; k <= static_cast<std::uint32_t>(s.parameters.solver_max_iterations); ++k) {
-            operators_.compute_gradient(s, operators_.u());
+            operators_.compute_gradient(s, *u_);
             backend_.launch(
                 Kernel::predict_position, count,
                 {s.constants, s.particles.position(), s.particles.velocity(), operators_.gradient(), *predicted_});
-            backend_.launch(Kernel::correct_pressure, count,
-                            {s.constants, delta, *predicted_, operators_.list().count(), operators_.list().list(),
-                             s.colliders.buffer(), operators_.factor(), operators_.u(), *residual_});
+            backend_.launch(
+                Kernel::correct_pressure, count,
+                {s.constants, delta, s.particles.position(), *predicted_, operators_.list().count(),
+                 operators_.list().list(), s.colliders.buffer(), operators_.factor(), *u_, s.particles.spare_words()});
             s.report.iterations = k;
-            if (k >= k_least_iterations && mean_of(backend_, *residual_, count) <= tolerance) {
+            if (k >= k_least_iterations && mean_of(backend_, s.particles.spare_words(), count) <= tolerance) {
                 s.report.converged = true;
                 return;
             }
         }
     }
 
-    void reserve(std::size_t particle_count) {
-        if (predicted_ && predicted_->bytes() >= particle_count * 16) return;
-        residual_ = backend_.allocate("residual", (particle_count + particle_count / 4) * 4);
-        predicted_ = backend_.allocate("predicted position", (particle_count + particle_count / 4) * 16);
+    void reserve(std::size_t particle_capacity) {
+        if (predicted_ && predicted_->bytes() >= particle_capacity * 16) return;
+        u_ = backend_.allocate("pressure", particle_capacity * 4);
+        predicted_ =
+            backend_.allocate("predicted position", particle_capacity * 16);  // the last: all of them are there
     }
 
     Backend& backend_;
     Operators operators_;
-    std::unique_ptr<Buffer> predicted_, residual_;
+    std::unique_ptr<Buffer> u_, predicted_;
 };
 
 }  // namespace

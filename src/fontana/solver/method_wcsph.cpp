@@ -8,22 +8,28 @@ namespace {
 
 class Wcsph : public Method {
  public:
-    explicit Wcsph(Backend& backend) : operators_(backend) {}
+    explicit Wcsph(Backend& backend) : backend_(backend), operators_(backend) {}
 
     void advance(Substep& s) override {
         operators_.begin(s);
         s.choose_time_step();
         operators_.add_forces(s);
         operators_.predict(s);
-        s.backend.launch(Kernel::tait_pressure, s.particles.count(),
-                         {s.constants, s.particles.density(), operators_.u()});
-        operators_.compute_gradient(s, operators_.u());
+        reserve(s.particles.capacity());
+        backend_.launch(Kernel::tait_pressure, s.particles.count(), {s.constants, s.particles.density(), *u_});
+        operators_.compute_gradient(s, *u_);
         operators_.push(s);
-        operators_.finish(s, operators_.u());
+        operators_.finish(s, *u_);
     }
 
  private:
+    void reserve(std::size_t particle_capacity) {
+        if (!u_ || u_->bytes() < particle_capacity * 4) u_ = backend_.allocate("pressure", particle_capacity * 4);
+    }
+
+    Backend& backend_;
     Operators operators_;
+    std::unique_ptr<Buffer> u_;
 };
 
 }  // namespace

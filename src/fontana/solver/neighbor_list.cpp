@@ -20,14 +20,12 @@ std::uint64_t NeighborList::entries(std::uint64_t particle_count, std::uint64_t 
     return is_shared() ? capacity : particle_count * capacity;
 }
 
-void NeighborList::reserve(std::size_t particle_count) {
-    if (list_ && reserved_ >= particle_count) return;
-    const std::size_t grown = reserved_ ? particle_count + particle_count / 4 : particle_count;
-    const std::size_t roomy = std::max(reserved_, reserved_ >= particle_count ? reserved_ : grown);
+void NeighborList::reserve(std::size_t roomy) {
+    if (list_ && reserved_ >= roomy) return;
     const std::uint64_t usual = is_shared() ? std::max<std::uint64_t>(64, roomy * k_usual_share) : k_usual_length;
     const std::uint64_t capacity = std::max<std::uint64_t>(capacity_, usual), total = entries(roomy, capacity);
     if (total > k_most_entries)
-        fail(FONTANA_OUT_OF_MEMORY, "neighbour lists of " + std::to_string(particle_count) + " particles, " +
+        fail(FONTANA_OUT_OF_MEMORY, "neighbour lists of " + std::to_string(roomy) + " particles, " +
                                         std::to_string(total) + " neighbours in all, cannot be indexed");
     list_.reset();  // the old one first, so that the two never stand side by side; there is none if memory runs out
     count_ = backend_.allocate("neighbour count", (is_shared() ? shared_total(roomy) + 1 : roomy) * 4);
@@ -58,7 +56,7 @@ std::uint32_t NeighborList::needed(std::size_t particle_count) {
 void NeighborList::build(Particles& particles, Neighborhood& neighborhood, StepConstants& constants) {
     const std::size_t count = particles.count();
     for (;;) {
-        reserve(count);
+        reserve(particles.capacity());
         set_layout(constants);
         const std::uint32_t nothing = 0;
         if (is_shared()) backend_.write(*count_, &nothing, 4, shared_total(count) * 4);

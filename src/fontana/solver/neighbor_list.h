@@ -28,7 +28,7 @@ class NeighborList {
     std::uint64_t entries(std::uint64_t particle_count, std::uint64_t capacity) const;
     // Where in count() the length of all shared lists stands.
     std::size_t shared_total(std::size_t particle_count) const;
-    void reserve(std::size_t particle_count);
+    void reserve(std::size_t particle_capacity);
     void set_layout(StepConstants& constants) const;
     // What capacity_ must be for the lists just built.
     std::uint32_t needed(std::size_t particle_count);

@@ -47,11 +47,10 @@ void Neighborhood::fit(Particles& particles, const StepConstants& constants) {
     shape_ = {bits[0], bits[1], bits[2]};
 }
 
-void Neighborhood::reserve(std::size_t particle_count, std::size_t cell_count) {
-    if (!key_ || key_->bytes() < particle_count * 4) {
-        const std::size_t roomy = particle_count + particle_count / 2;
-        order_ = backend_.allocate("order", roomy * 4);
-        key_ = backend_.allocate("cell key", roomy * 4);
+void Neighborhood::reserve(std::size_t particle_capacity, std::size_t cell_count) {
+    if (!key_ || key_->bytes() < particle_capacity * 4) {
+        order_ = backend_.allocate("order", particle_capacity * 4);
+        key_ = backend_.allocate("cell key", particle_capacity * 4);
     }
     if (!cell_start_ || cell_start_->bytes() < (cell_count + 1) * 4)
         cell_start_ = backend_.allocate("cell start", (cell_count + 1) * 4);
@@ -59,7 +58,7 @@ void Neighborhood::reserve(std::size_t particle_count, std::size_t cell_count) {
 
 void Neighborhood::update(Particles& particles, StepConstants& constants) {
     const std::size_t cell_count = constants.use_grid ? shape_.cell_count() : 1;
-    reserve(particles.count(), cell_count);
+    reserve(particles.capacity(), cell_count);
     constants.particle_count = static_cast<std::uint32_t>(particles.count());
     constants.grid_mask_x = (1u << shape_.bits_x) - 1u;
     constants.grid_mask_y = (1u << shape_.bits_y) - 1u;
@@ -68,7 +67,7 @@ void Neighborhood::update(Particles& particles, StepConstants& constants) {
     constants.grid_shift_z = shape_.bits_x + shape_.bits_y;
     if (!constants.use_grid) return;
     backend_.launch(Kernel::assign_cells, particles.count(), {constants, particles.position(), *key_});
-    backend_.sort(*key_, particles.count(), cell_count, *order_, *cell_start_);
+    backend_.sort(*key_, particles.count(), cell_count, *order_, *cell_start_, particles.spare_vectors());
     particles.reorder(*order_);
 }
 

@@ -32,10 +32,14 @@ class Neighborhood {
     void update(Particles& particles, StepConstants& constants);
     Buffer& cell_start() { return *cell_start_; }
 
+    // What the next sort will need again; free for use until then. 4 bytes a particle each.
+    Buffer& spare_words() { return *key_; }
+    Buffer& more_spare_words() { return *order_; }
+
     static std::uint64_t bytes(std::uint64_t particle_count);
 
  private:
-    void reserve(std::size_t particle_count, std::size_t cell_count);
+    void reserve(std::size_t particle_capacity, std::size_t cell_count);
 
     Backend& backend_;
     GridShape shape_;

@@ -2,27 +2,18 @@
 
 namespace fontana {
 
-void Operators::reserve(std::size_t particle_count) {
-    if (u_ && reserved_ >= particle_count) return;
-    const std::size_t roomy = particle_count + particle_count / 4;
-    factor_ = backend_.allocate("factor", roomy * 16);
-    wall_rate_ = backend_.allocate("wall rate", roomy * 4);
-    rate_ = backend_.allocate("rate", roomy * 4);
-    gradient_ = backend_.allocate("pressure gradient", roomy * 16);
-    u_ = backend_.allocate("pressure", roomy * 4);
-    reserved_ = roomy;  // only now: memory may run out halfway
-}
-
-std::uint64_t Operators::bytes(std::uint64_t particle_count, std::uint32_t list_group) {
-    return (particle_count + particle_count / 4) * (2 * 16 + 3 * 4) + NeighborList::bytes(particle_count, list_group);
+void Operators::borrow(Substep& s) {
+    factor_ = &s.particles.spare_vectors();
+    gradient_ = &s.particles.more_spare_vectors();
+    rate_ = &s.neighborhood.spare_words();
+    wall_rate_ = &s.neighborhood.more_spare_words();
 }
 
 void Operators::begin(Substep& s) {
-    const std::size_t count = s.particles.count();
-    reserve(count);
+    borrow(s);
     list_.build(s.particles, s.neighborhood, s.constants);
     s.place_walls();
-    backend_.launch(Kernel::sum_neighborhood, count,
+    backend_.launch(Kernel::sum_neighborhood, s.particles.count(),
                     {s.constants, s.particles.position(), s.particles.velocity(), list_.count(), list_.list(),
                      s.colliders.buffer(), s.particles.density(), *factor_, *wall_rate_, *rate_, *gradient_});
 }
@@ -36,10 +27,6 @@ void Operators::compute_rate(Substep& s) {
 void Operators::compute_gradient(Substep& s, Buffer& u) {
     backend_.launch(Kernel::pressure_gradient, s.particles.count(),
                     {s.constants, u, list_.count(), list_.list(), s.particles.position(), *factor_, *gradient_});
-}
-
-void Operators::clear_u(Substep& s) {
-    backend_.launch(Kernel::clear_words, s.particles.count(), {static_cast<std::uint32_t>(s.particles.count()), *u_});
 }
 
 void Operators::push(Substep& s) {
@@ -59,7 +46,7 @@ void Operators::predict(Substep& s) {
 
 void Operators::finish(Substep& s, Buffer& u) {
     backend_.launch(Kernel::store_pressure, s.particles.count(),
-                    {s.constants, u, s.particles.density(), s.particles.velocity(), s.particles.packed_velocity()});
+                    {s.constants, u, s.particles.density(), s.particles.velocity(), s.particles.pressure()});
     s.place_colliders();
     backend_.launch(Kernel::advect, s.particles.count(),
                     {s.constants, s.colliders.buffer(), s.particles.position(), s.particles.velocity()});

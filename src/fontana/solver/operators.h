@@ -24,8 +24,6 @@ class Operators {
     void compute_rate(Substep& substep);
     // G u into gradient(); m/s^2.
     void compute_gradient(Substep& substep, Buffer& u);
-    // u = 0.
-    void clear_u(Substep& substep);
     // v -= dt G u.
     void push(Substep& substep);
     // v += dt a.
@@ -37,17 +35,14 @@ class Operators {
     Buffer& factor() { return *factor_; }
     Buffer& rate() { return *rate_; }
     Buffer& gradient() { return *gradient_; }
-    Buffer& u() { return *u_; }
-
-    static std::uint64_t bytes(std::uint64_t particle_count, std::uint32_t list_group);
 
  private:
-    void reserve(std::size_t particle_count);
+    // Nothing here outlives the substep, so it lives in what the next sort will overwrite.
+    void borrow(Substep& substep);
 
     Backend& backend_;
     NeighborList list_;
-    std::size_t reserved_ = 0;
-    std::unique_ptr<Buffer> factor_, wall_rate_, rate_, gradient_, u_;
+    Buffer *factor_ = nullptr, *wall_rate_ = nullptr, *rate_ = nullptr, *gradient_ = nullptr;
 };
 
 }  // namespace fontana

@@ -7,6 +7,9 @@
 namespace fontana {
 namespace {
 
+// Particles that are put together on the host at a time, so that a large block is not there twice.
+constexpr std::size_t k_slice = 65536;
+
 template <typename T>
 std::vector<T> read_all(Backend& backend, const Buffer& buffer, std::size_t count) {
     std::vector<T> values(count);
@@ -23,8 +26,7 @@ void write_all(Backend& backend, Buffer& buffer, const std::vector<T>& values) {
 
 std::uint64_t Particles::bytes_per_particle() {
     return 2 * (16 + 16 + 4)  // position, velocity, id, and where they are sorted to
-           + 4 + 3 * 16       // density, packed position and velocity, acceleration
-           + 16;              // force
+           + 2 * 4 + 16;      // density, pressure, acceleration
 }
 
 void Particles::grow(std::unique_ptr<Buffer>& buffer, const char* name, std::size_t bytes, std::size_t kept_bytes) {
@@ -38,13 +40,12 @@ void Particles::reserve(std::size_t capacity) {
     if (capacity > most)
         fail(FONTANA_BAD_INPUT, std::to_string(capacity) + " particles are more than the " + std::to_string(most) +
                                     " that ids and indices can count");
-    const std::size_t roomy = std::max({capacity, capacity_ + capacity_ / 2, std::size_t{64}});
+    const std::size_t roomy = std::max({capacity, capacity_ + capacity_ / 4, std::size_t{64}});
     grow(position_, "position", 16 * roomy, 16 * count_);
     grow(velocity_, "velocity", 16 * roomy, 16 * count_);
     grow(id_, "id", 4 * roomy, 4 * count_);
     grow(density_, "density", 4 * roomy, 4 * count_);
-    grow(packed_position_, "packed position", 16 * roomy, 16 * count_);
-    grow(packed_velocity_, "packed velocity", 16 * roomy, 16 * count_);
+    grow(pressure_, "pressure", 4 * roomy, 4 * count_);
     grow(acceleration_, "acceleration", 16 * roomy, 16 * count_);
     grow(force_by_id_, "force", has_force_ ? 16 * roomy : 0, has_force_ ? 16 * count_ : 0);
     grow(other_position_, "sorted position", 16 * roomy, 0);
@@ -56,21 +57,27 @@ void Particles::reserve(std::size_t capacity) {
 void Particles::append(std::size_t count, const float* position, const float* velocity, const float* mass,
                        float rest_density) {
     reserve(count_ + count);
-    std::vector<float4> x(count), v(count), at_rest(count);
+    for (std::size_t done = 0; done < count; done += k_slice)
+        write_slice(count_ + done, std::min(k_slice, count - done), position + 3 * done, velocity + 3 * done,
+                    mass + done, rest_density);
+    count_ += count;
+}
+
+void Particles::write_slice(std::size_t first, std::size_t count, const float* position, const float* velocity,
+                            const float* mass, float rest_density) {
+    std::vector<float4> x(count), v(count);
     std::vector<std::uint32_t> id(count);
-    std::vector<float> density(count, rest_density);
+    const std::vector<float> density(count, rest_density), pressure(count, 0.0f);
     for (std::size_t k = 0; k < count; ++k) {
         x[k] = {position[3 * k], position[3 * k + 1], position[3 * k + 2], mass[k]};
         v[k] = {velocity[3 * k], velocity[3 * k + 1], velocity[3 * k + 2], 0.0f};
-        at_rest[k] = {v[k].x, v[k].y, v[k].z, 0.0f};
-        id[k] = static_cast<std::uint32_t>(count_ + k);
+        id[k] = static_cast<std::uint32_t>(first + k);
     }
-    backend_.write(*position_, x.data(), count * 16, count_ * 16);
-    backend_.write(*velocity_, v.data(), count * 16, count_ * 16);
-    backend_.write(*id_, id.data(), count * 4, count_ * 4);
-    backend_.write(*density_, density.data(), count * 4, count_ * 4);
-    backend_.write(*packed_velocity_, at_rest.data(), count * 16, count_ * 16);
-    count_ += count;
+    backend_.write(*position_, x.data(), count * 16, first * 16);
+    backend_.write(*velocity_, v.data(), count * 16, first * 16);
+    backend_.write(*id_, id.data(), count * 4, first * 4);
+    backend_.write(*density_, density.data(), count * 4, first * 4);
+    backend_.write(*pressure_, pressure.data(), count * 4, first * 4);
 }
 
 void Particles::set_force(const std::vector<float4>& force_by_id) {
@@ -86,7 +93,7 @@ ParticleState Particles::download() {
     state.velocity = read_all<float4>(backend_, *velocity_, count_);
     state.id = read_all<std::uint32_t>(backend_, *id_, count_);
     state.density = read_all<float>(backend_, *density_, count_);
-    state.packed_velocity = read_all<float4>(backend_, *packed_velocity_, count_);
+    state.pressure = read_all<float>(backend_, *pressure_, count_);
     state.acceleration = read_all<float4>(backend_, *acceleration_, count_);
     if (has_force_) state.force_by_id = read_all<float4>(backend_, *force_by_id_, count_);
     return state;
@@ -101,7 +108,7 @@ void Particles::upload(const ParticleState& state) {
     write_all(backend_, *velocity_, state.velocity);
     write_all(backend_, *id_, state.id);
     write_all(backend_, *density_, state.density);
-    write_all(backend_, *packed_velocity_, state.packed_velocity);
+    write_all(backend_, *pressure_, state.pressure);
     write_all(backend_, *acceleration_, state.acceleration);
 }
 

@@ -17,10 +17,10 @@ struct ParticleState {
     std::vector<float4> position;  // x, y, z in m, mass in kg
     std::vector<float4> velocity;  // m/s
     std::vector<std::uint32_t> id;
-    std::vector<float> density;           // kg/m^3
-    std::vector<float4> packed_velocity;  // .w: pressure in Pa
-    std::vector<float4> acceleration;     // m/s^2
-    std::vector<float4> force_by_id;      // N; empty where no force was set
+    std::vector<float> density;        // kg/m^3
+    std::vector<float> pressure;       // Pa
+    std::vector<float4> acceleration;  // m/s^2
+    std::vector<float4> force_by_id;   // N; empty where no force was set
 };
 
 class Particles {
@@ -31,7 +31,7 @@ class Particles {
     explicit Particles(Backend& backend) : backend_(backend) {}
 
     std::size_t count() const { return count_; }
-    // Particles still to be had without growing.
+    // How many there is room for without growing, here and in all arrays that go by it.
     std::size_t capacity() const { return capacity_; }
     static std::uint64_t bytes_per_particle();
 
@@ -51,20 +51,26 @@ class Particles {
     Buffer& velocity() { return *velocity_; }
     Buffer& id() { return *id_; }
     Buffer& density() { return *density_; }
-    Buffer& packed_position() { return *packed_position_; }
-    Buffer& packed_velocity() { return *packed_velocity_; }
+    Buffer& pressure() { return *pressure_; }
     Buffer& acceleration() { return *acceleration_; }
     Buffer& force_by_id() { return *force_by_id_; }
 
+    // The arrays that the next sort puts the particles into; free for use until then. 16, 16 and 4 bytes a particle.
+    Buffer& spare_vectors() { return *other_position_; }
+    Buffer& more_spare_vectors() { return *other_velocity_; }
+    Buffer& spare_words() { return *other_id_; }
+
  private:
     void reserve(std::size_t capacity);
+    void write_slice(std::size_t first, std::size_t count, const float* position, const float* velocity,
+                     const float* mass, float rest_density);
     void grow(std::unique_ptr<Buffer>& buffer, const char* name, std::size_t bytes, std::size_t kept_bytes);
 
     Backend& backend_;
     std::size_t count_ = 0, capacity_ = 0;
     bool has_force_ = false;
-    std::unique_ptr<Buffer> position_, velocity_, id_, density_, packed_position_, packed_velocity_, acceleration_,
-        force_by_id_, other_position_, other_velocity_, other_id_;
+    std::unique_ptr<Buffer> position_, velocity_, id_, density_, pressure_, acceleration_, force_by_id_,
+        other_position_, other_velocity_, other_id_;
 };
 
 }  // namespace fontana

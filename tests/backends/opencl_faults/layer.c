@@ -28,6 +28,7 @@
     apply(clGetKernelInfo, 39)           \
     apply(clGetKernelWorkGroupInfo, 40)  \
     apply(clGetEventProfilingInfo, 45)   \
+    apply(clCreateSubBuffer, 82)         \
     apply(clFinish, 47)                  \
     apply(clEnqueueReadBuffer, 48)       \
     apply(clEnqueueWriteBuffer, 49)      \
@@ -85,6 +86,9 @@ RETURNS_OBJECT(cl_command_queue, clCreateCommandQueue,
                (context, id, properties, code))
 RETURNS_OBJECT(cl_mem, clCreateBuffer, (cl_context context, cl_mem_flags flags, size_t n, void* host, cl_int* code),
                (context, flags, n, host, code))
+RETURNS_OBJECT(cl_mem, clCreateSubBuffer,
+               (cl_mem whole, cl_mem_flags flags, cl_buffer_create_type type, const void* region, cl_int* code),
+               (whole, flags, type, region, code))
 RETURNS_OBJECT(cl_program, clCreateProgramWithSource,
                (cl_context context, cl_uint n, const char** text, const size_t* sizes, cl_int* code),
                (context, n, text, sizes, code))

@@ -28,10 +28,16 @@ constexpr int k_most_arguments = 16;
 class CpuBuffer : public Buffer {
  public:
     CpuBuffer(const std::string& name, std::size_t bytes)
-        : Buffer(name, bytes), data_(static_cast<char*>(::operator new(bytes + k_slack, k_alignment))) {
+        : Buffer(name, bytes),
+          data_(static_cast<char*>(::operator new(bytes + k_slack, k_alignment))),
+          is_owner_(true) {
         std::fill_n(data_, bytes + k_slack, '\0');
     }
-    ~CpuBuffer() override { ::operator delete(data_, k_alignment); }
+    CpuBuffer(const std::string& name, std::size_t bytes, char* data)
+        : Buffer(name, bytes), data_(data), is_owner_(false) {}
+    ~CpuBuffer() override {
+        if (is_owner_) ::operator delete(data_, k_alignment);
+    }
     char* data() const { return data_; }
 
  private:
@@ -39,6 +45,7 @@ class CpuBuffer : public Buffer {
     // A loop over vectors of sixteen particles reads, but does not use, up to fifteen beyond the last.
     static constexpr std::size_t k_slack = 16 * sizeof(float4);
     char* data_;
+    bool is_owner_;
 };
 
 char* data_of(const Buffer& buffer) { return static_cast<const CpuBuffer&>(buffer).data(); }
@@ -111,6 +118,12 @@ class CpuBackend : public Backend {
         }
     }
 
+    std::unique_ptr<Buffer> part(Buffer& whole, const std::string& name, std::size_t offset,
+                                 std::size_t bytes) override {
+        check_range(whole, bytes, offset);
+        return std::make_unique<CpuBuffer>(name, bytes, data_of(whole) + offset);
+    }
+
     void write(Buffer& to, const void* from, std::size_t bytes, std::size_t offset) override {
         check_range(to, bytes, offset);
         if (bytes) std::memcpy(data_of(to) + offset, from, bytes);
@@ -138,14 +151,17 @@ class CpuBackend : public Backend {
         return std::make_unique<Compiled>(*this, text);
     }
 
-    void sort(const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start) override {
+    void sort(const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start,
+              Buffer& scratch) override {
         check_range(key, count * 4, 0);
         check_range(order, count * 4, 0);
         check_range(start, (key_count + 1) * 4, 0);
+        check_range(scratch, count * sizeof(RadixSort::Item) * 2, 0);
         timed("sort", count, [&] {
             sorter_.sort(pool_, reinterpret_cast<const std::uint32_t*>(data_of(key)), count, key_count,
                          reinterpret_cast<std::uint32_t*>(data_of(order)),
-                         reinterpret_cast<std::uint32_t*>(data_of(start)));
+                         reinterpret_cast<std::uint32_t*>(data_of(start)),
+                         reinterpret_cast<RadixSort::Item*>(data_of(scratch)));
         });
     }
 

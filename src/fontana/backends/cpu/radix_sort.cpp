@@ -1,6 +1,7 @@
 #include "backends/cpu/radix_sort.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace fontana {
 namespace {
@@ -13,33 +14,29 @@ constexpr std::size_t k_grain = 65536;
 }  // namespace
 
 void RadixSort::sort(ThreadPool& pool, const std::uint32_t* key, std::size_t count, std::size_t key_count,
-                     std::uint32_t* order, std::uint32_t* start) {
-    if (scratch_.size() < count) {
-        items_.resize(count);
-        scratch_.resize(count);
-    }
+                     std::uint32_t* order, std::uint32_t* start, Item* scratch) {
+    Item *items = scratch, *other = scratch + count;
     pool.run(count, k_grain, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) items_[i] = {key[i], static_cast<std::uint32_t>(i)};
+        for (std::size_t i = begin; i < end; ++i) items[i] = {key[i], static_cast<std::uint32_t>(i)};
     });
     for (int shift = 0; (std::uint64_t{key_count} - 1) >> shift != 0; shift += k_digit_bits) {
-        pass(pool, items_, scratch_, count, shift);
-        items_.swap(scratch_);
+        pass(pool, items, other, count, shift);
+        std::swap(items, other);
     }
     pool.run(count, k_grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            order[i] = items_[i].index;
-            const std::size_t first_new = i == 0 ? 0 : std::size_t{items_[i - 1].key} + 1;
-            for (std::size_t k = first_new; k <= items_[i].key; ++k) start[k] = static_cast<std::uint32_t>(i);
+            order[i] = items[i].index;
+            const std::size_t first_new = i == 0 ? 0 : std::size_t{items[i - 1].key} + 1;
+            for (std::size_t k = first_new; k <= items[i].key; ++k) start[k] = static_cast<std::uint32_t>(i);
         }
     });
-    const std::size_t after_last = count == 0 ? 0 : std::size_t{items_[count - 1].key} + 1;
+    const std::size_t after_last = count == 0 ? 0 : std::size_t{items[count - 1].key} + 1;
     std::fill(start + after_last, start + key_count + 1, static_cast<std::uint32_t>(count));
 }
 
 // One digit: each chunk counts its own, the counts become positions (all chunks of a digit in order, so it is stable),
 // and each chunk places its items.
-void RadixSort::pass(ThreadPool& pool, const std::vector<Item>& from, std::vector<Item>& to, std::size_t count,
-                     int shift) {
+void RadixSort::pass(ThreadPool& pool, const Item* from, Item* to, std::size_t count, int shift) {
     const std::size_t chunk_count = (count + k_chunk - 1) / k_chunk;
     histogram_.assign(chunk_count * k_digits, 0);
     const auto digit = [shift](const Item& item) { return (item.key >> shift) & (k_digits - 1); };

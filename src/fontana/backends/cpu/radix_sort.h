@@ -12,17 +12,18 @@ namespace fontana {
 
 class RadixSort {
  public:
-    // order: count indices; start: key_count + 1 entries. The result does not depend on the number of threads.
-    void sort(ThreadPool& pool, const std::uint32_t* key, std::size_t count, std::size_t key_count,
-              std::uint32_t* order, std::uint32_t* start);
-
- private:
     struct Item {
         std::uint32_t key, index;
     };
-    void pass(ThreadPool& pool, const std::vector<Item>& from, std::vector<Item>& to, std::size_t count, int shift);
 
-    std::vector<Item> items_, scratch_;
+    // order: count indices; start: key_count + 1 entries; scratch: 2 count items. The result does not depend on the
+    // number of threads.
+    void sort(ThreadPool& pool, const std::uint32_t* key, std::size_t count, std::size_t key_count,
+              std::uint32_t* order, std::uint32_t* start, Item* scratch);
+
+ private:
+    void pass(ThreadPool& pool, const Item* from, Item* to, std::size_t count, int shift);
+
     std::vector<std::uint32_t> histogram_;
 };
 

@@ -51,7 +51,8 @@ namespace FONTANA_WIDE {
 constexpr uint k_most_hits = 256;
 
 void density(uint begin, uint end, const StepConstants& c, const float4* position, const float4* velocity,
-             const uint* cell_start, float* density_out, float4* packed_position, float4* packed_velocity) {
+             const uint* cell_start, float* density_out, float4* packed_position, float4* packed_velocity,
+             float* pressure) {
     Candidates candidates(c, position, cell_start);
     for (uint i = begin; i < end; ++i) {
         const float4 x_i = position[i];
@@ -62,7 +63,8 @@ void density(uint begin, uint end, const StepConstants& c, const float4* positio
             const Vec r_squared = min_f(distance_squared(x_i, x_j), c.support_radius_squared);
             sum += x_j.w * poly6(r_squared, c.support_radius_squared);
         });
-        store_pressure_state(c, i, sum_of(sum), x_i, velocity[i], density_out, packed_position, packed_velocity);
+        store_pressure_state(c, i, sum_of(sum), x_i, velocity[i], density_out, packed_position, packed_velocity,
+                             pressure);
     }
 }
 
@@ -202,17 +204,21 @@ void pressure_gradient(uint begin, uint end, const StepConstants& c, const float
     }
 }
 
-void correct_pressure(uint begin, uint end, const StepConstants& c, float delta, const float4* predicted,
-                      const uint* neighbor_count, const uint* list, const ColliderConstants* collider,
-                      const float4* factor, float* u, float* residual) {
+void correct_pressure(uint begin, uint end, const StepConstants& c, float delta, const float4* position,
+                      const float4* predicted, const uint* neighbor_count, const uint* list,
+                      const ColliderConstants* collider, const float4* factor, float* u, float* residual) {
     for (uint first = begin; first < end; first += k_list_group) {
-        const Members members(first, end, predicted);
+        const Members members(first, end, position), then(first, end, predicted);
         Vec density[k_list_group] = {};
-        for_list(first, neighbor_count, list, predicted, [&](const uint*, const Vec4& x_j) {
-            for (uint s = 0; s < k_list_group; ++s) density[s] += x_j.w * kernel_value(c, pair_of(members.x[s], x_j).r);
+        for_list(first, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
+            const Vec4 y_j = gather(predicted, j);
+            for (uint s = 0; s < k_list_group; ++s) {
+                const uint is_near = less_mask(distance_squared(members.x[s], x_j), c.support_radius_squared);
+                density[s] += keep(is_near, x_j.w * kernel_value(c, pair_of(then.x[s], y_j).r));
+            }
         });
         for (uint s = 0; s < members.count; ++s) {
-            const float wall_share = walls_at(c, collider, members.x[s]).share;
+            const float wall_share = walls_at(c, collider, then.x[s]).share;
             store_correction(c, first + s, delta, sum_of(density[s]), wall_share, factor, u, residual);
         }
     }

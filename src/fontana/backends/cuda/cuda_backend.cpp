@@ -44,6 +44,10 @@ class CudaBackend : public Backend {
     std::unique_ptr<Buffer> allocate(const std::string& name, std::size_t bytes) override {
         return stream_.allocate(name, bytes);
     }
+    std::unique_ptr<Buffer> part(Buffer& whole, const std::string& name, std::size_t offset,
+                                 std::size_t bytes) override {
+        return stream_.part(whole, name, offset, bytes);
+    }
     void write(Buffer& to, const void* from, std::size_t bytes, std::size_t offset) override {
         stream_.write(to, from, bytes, offset);
     }
@@ -59,8 +63,9 @@ class CudaBackend : public Backend {
         CudaModule program = build_cuda_program(stream_, {text.pieces, text.piece_count}, strict_);
         return std::make_unique<CompiledFromText>(stream_, std::move(program), text.name);
     }
-    void sort(const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start) override {
-        sort_.sort(stream_, key, count, key_count, order, start);
+    void sort(const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start,
+              Buffer& scratch) override {
+        sort_.sort(stream_, key, count, key_count, order, start, scratch);
     }
 
     void finish() override { stream_.finish(); }

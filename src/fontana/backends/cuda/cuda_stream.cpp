@@ -32,6 +32,13 @@ std::unique_ptr<Buffer> CudaStream::allocate(const std::string& name, std::size_
     return buffer;
 }
 
+std::unique_ptr<Buffer> CudaStream::part(Buffer& whole, const std::string& name, std::size_t offset,
+                                         std::size_t bytes) {
+    require_alive();
+    require_inside(whole, offset, bytes, "a part");
+    return std::make_unique<CudaBuffer>(name, bytes, memory_of(whole) + offset);
+}
+
 // Both return when the host's memory is free again.
 void CudaStream::write(Buffer& to, const void* from, std::size_t bytes, std::size_t offset) {
     require_alive();

@@ -17,10 +17,14 @@ namespace fontana {
 class CudaBuffer : public Buffer {
  public:
     CudaBuffer(const std::string& name, std::size_t bytes, CudaMemory memory)
-        : Buffer(name, bytes), memory_(std::move(memory)) {}
-    CUdeviceptr memory() const { return memory_.get(); }
+        : Buffer(name, bytes), address_(memory.get()), memory_(std::move(memory)) {}
+    // A part of another.
+    CudaBuffer(const std::string& name, std::size_t bytes, CUdeviceptr address)
+        : Buffer(name, bytes), address_(address) {}
+    CUdeviceptr memory() const { return address_; }
 
  private:
+    CUdeviceptr address_;
     CudaMemory memory_;
 };
 
@@ -37,6 +41,7 @@ class CudaStream {
     const std::shared_ptr<const CudaContext>& context() const { return context_; }
 
     std::unique_ptr<Buffer> allocate(const std::string& name, std::size_t bytes);
+    std::unique_ptr<Buffer> part(Buffer& whole, const std::string& name, std::size_t offset, std::size_t bytes);
     void write(Buffer& to, const void* from, std::size_t bytes, std::size_t offset);
     void read(const Buffer& from, void* to, std::size_t bytes, std::size_t offset);
     void copy(const Buffer& from, Buffer& to, std::size_t bytes);

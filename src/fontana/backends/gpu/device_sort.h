@@ -29,18 +29,19 @@ class DeviceSort {
           values_per_block_(group_size * k_values_per_thread) {}
 
     // As Backend::sort. The buffers it needs beside are kept for the next call and grow with those it is given.
-    void sort(Queue& queue, const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start) {
+    void sort(Queue& queue, const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start,
+              Buffer& rank) {
         queue.require_alive();
         require_values(key, count);
         require_values(order, count);
         require_values(start, key_count + 1);
-        grow(queue, rank_, "sort: rank", key.bytes());
+        require_values(rank, count);
         const auto value_count = static_cast<std::uint32_t>(count);
         queue.clear(start, (key_count + 1) * sizeof(std::uint32_t), "sort: clear");
-        histogram_.launch(queue, count, {value_count, key, start, *rank_});
+        histogram_.launch(queue, count, {value_count, key, start, rank});
         // The last entry counts nothing, so its exclusive sum is the end of the last key.
         scan(queue, start, key_count + 1, 0);
-        scatter_.launch(queue, count, {value_count, key, *rank_, start, order});
+        scatter_.launch(queue, count, {value_count, key, rank, start, order});
         if (count > 1) order_ties_.launch(queue, key_count, {static_cast<std::uint32_t>(key_count), start, order});
     }
 
@@ -76,7 +77,6 @@ class DeviceSort {
 
     Kernel histogram_, scan_blocks_, add_offsets_, scatter_, order_ties_;
     std::size_t values_per_block_;
-    std::unique_ptr<Buffer> rank_;
     std::vector<std::unique_ptr<Buffer>> block_totals_;  // by level of the scan
 };
 

@@ -76,7 +76,7 @@ FN float add_density(float sum, const StepConstants c, float4 x_i, float4 x_j) {
 GROUP_KERNEL void density_tiles(const StepConstants c, GLOBAL const float4* RESTRICT position,
                                 GLOBAL const float4* RESTRICT velocity, GLOBAL const uint* RESTRICT cell_start,
                                 GLOBAL float* RESTRICT density_out, GLOBAL float4* RESTRICT packed_position,
-                                GLOBAL float4* RESTRICT packed_velocity) {
+                                GLOBAL float4* RESTRICT packed_velocity, GLOBAL float* RESTRICT pressure) {
     LOCAL float4 tile[FONTANA_GROUP_SIZE];
     LOCAL uint cover[COVER_SIZE];
     const uint i = THREAD_INDEX, lane = LANE_INDEX;
@@ -100,7 +100,7 @@ GROUP_KERNEL void density_tiles(const StepConstants c, GLOBAL const float4* REST
         }
     }
     if (is_particle)
-        store_pressure_state(c, i, sum, x_i, velocity[i], density_out, packed_position, packed_velocity);
+        store_pressure_state(c, i, sum, x_i, velocity[i], density_out, packed_position, packed_velocity, pressure);
 }
 
 FN ForceSum add_force_within(ForceSum sum, const StepConstants c, float4 x_i, float4 v_i, float4 x_j, float4 v_j) {

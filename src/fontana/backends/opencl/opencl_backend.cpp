@@ -44,6 +44,10 @@ class OpenClBackend : public Backend {
     std::unique_ptr<Buffer> allocate(const std::string& name, std::size_t bytes) override {
         return queue_.allocate(name, bytes);
     }
+    std::unique_ptr<Buffer> part(Buffer& whole, const std::string& name, std::size_t offset,
+                                 std::size_t bytes) override {
+        return queue_.part(whole, name, offset, bytes);
+    }
     void write(Buffer& to, const void* from, std::size_t bytes, std::size_t offset) override {
         queue_.write(to, from, bytes, offset);
     }
@@ -60,8 +64,9 @@ class OpenClBackend : public Backend {
             build_opencl_program(queue_.context(), queue_.device(), {text.pieces, text.piece_count}, strict_);
         return std::make_unique<CompiledFromText>(queue_, std::move(program), text.name);
     }
-    void sort(const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start) override {
-        sort_.sort(queue_, key, count, key_count, order, start);
+    void sort(const Buffer& key, std::size_t count, std::size_t key_count, Buffer& order, Buffer& start,
+              Buffer& scratch) override {
+        sort_.sort(queue_, key, count, key_count, order, start, scratch);
     }
 
     void finish() override { queue_.finish(); }

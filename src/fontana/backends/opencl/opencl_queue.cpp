@@ -48,6 +48,18 @@ std::unique_ptr<Buffer> CommandQueue::allocate(const std::string& name, std::siz
     return buffer;
 }
 
+std::unique_ptr<Buffer> CommandQueue::part(Buffer& whole, const std::string& name, std::size_t offset,
+                                           std::size_t bytes) {
+    require_alive();
+    require_inside(whole, offset, bytes, "a part");
+    const cl_buffer_region region{offset, bytes};
+    cl_int code = CL_SUCCESS;
+    OpenClMemory memory(
+        opencl().clCreateSubBuffer(memory_of(whole), CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION, &region, &code));
+    check(code, "taking a part of", whole.name() + " for " + name);
+    return std::make_unique<OpenClBuffer>(name, bytes, std::move(memory));
+}
+
 void CommandQueue::write(Buffer& to, const void* from, std::size_t bytes, std::size_t offset) {
     require_alive();
     require_inside(to, offset, bytes, "a write");

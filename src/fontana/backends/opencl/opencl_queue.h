@@ -37,6 +37,7 @@ class CommandQueue {
     cl_context context() const { return context_.get(); }
 
     std::unique_ptr<Buffer> allocate(const std::string& name, std::size_t bytes);
+    std::unique_ptr<Buffer> part(Buffer& whole, const std::string& name, std::size_t offset, std::size_t bytes);
     void write(Buffer& to, const void* from, std::size_t bytes, std::size_t offset);
     void read(const Buffer& from, void* to, std::size_t bytes, std::size_t offset);
     void copy(const Buffer& from, Buffer& to, std::size_t bytes);
