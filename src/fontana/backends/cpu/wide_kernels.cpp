@@ -323,6 +323,20 @@ void relax(uint begin, uint end, const StepConstants& c, const float& relaxation
     }
 }
 
+// Neighbouring lanes at once, so that memory is read in rows.
+void reduce_step(uint begin, uint end, const StepConstants& c, const uint& lane_count, const float4* velocity,
+                 const float4* acceleration, const float* density_in, float4* extremes) {
+    constexpr uint k_lanes = 512;
+    for (uint lane = begin; lane < end; lane += k_lanes) {
+        const uint lanes = end - lane < k_lanes ? end - lane : k_lanes;
+        float4 e[k_lanes] = {};
+        for (uint first = lane; first < c.particle_count; first += lane_count)
+            for (uint k = 0; k < lanes && first + k < c.particle_count; ++k)
+                e[k] = add_to_step(c, e[k], velocity[first + k], acceleration[first + k], density_in[first + k]);
+        for (uint k = 0; k < lanes; ++k) extremes[lane + k] = e[k];
+    }
+}
+
 // Neighbouring lanes of the sums at once, each in the order of the plain loop.
 void anderson_sums(uint begin, uint end, const uint& count, const uint& lane_count, const float4* factor,
                    const float* residual, const float* u, const float* step, const float* step_1, const float* step_2,
@@ -382,8 +396,8 @@ KernelLoop FONTANA_WIDE_LOOP(const char* kernel) {
 #define WIDE(function) \
     {#function, &Loop<decltype(&::function), decltype(&FONTANA_WIDE::function)>::run<&FONTANA_WIDE::function>},
         WIDE(density) WIDE(fluid_force) WIDE(build_neighbor_list) WIDE(sum_neighborhood) WIDE(density_rate)
-            WIDE(pressure_residual) WIDE(pressure_gradient) WIDE(correct_pressure) WIDE(relax) WIDE(anderson_sums)
-                WIDE(coarse_products)
+            WIDE(pressure_residual) WIDE(pressure_gradient) WIDE(correct_pressure) WIDE(relax) WIDE(reduce_step)
+                WIDE(anderson_sums) WIDE(coarse_products)
 #undef WIDE
     };
     for (const auto& row : table)
