@@ -132,7 +132,7 @@ def test_a_buffer_that_does_not_fit_says_what_it_needs_and_what_is_free(cuda_run
     failed = cuda_run.sweep("cuMemAlloc", (OUT_OF_MEMORY[0], "fewer particles, or another device"))
     assert kinds(failed) == {"OutOfMemory"}
     said = " ".join(run["sentence"] for run in failed)
-    for buffer in ("position", "density", "cell start", "sort: rank"):
+    for buffer in ("position", "density", "cell start", "sort: block totals"):
         assert re.search(
             rf"the buffer {buffer} needs [0-9]+ bytes, and the CUDA device '.+' has 10[0-9.]+ MiB free of 1024.0 MiB",
             said,

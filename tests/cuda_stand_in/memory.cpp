@@ -1,5 +1,6 @@
 #include "memory.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <iterator>
 
@@ -29,7 +30,7 @@ std::uint64_t DeviceMemory::allocate(std::size_t bytes, std::size_t limit) {
     if (!memory) return 0;
     std::memset(memory, k_pattern, bytes);
     const auto address = reinterpret_cast<std::uint64_t>(memory);
-    allocations_[address].bytes = bytes;
+    allocations_[address] = {bytes, std::vector<Part>(bytes / k_part + 1)};
     used_bytes_ += bytes;
     return address;
 }
@@ -64,12 +65,14 @@ void DeviceMemory::find(std::uint64_t launch, Site& site, std::uint64_t address,
         name_of(access) + (" of " + std::to_string(bytes)) + " bytes at " + place_of(address, begin, allocation.bytes);
     if (!contains(address, bytes)) throw DeviceFault(k_illegal_address, where);
     if (address % bytes != 0) throw DeviceFault(k_misaligned_address, where + " is not on a multiple of its size");
-    if (access == Access::constant) allocation.constant_in = launch;
-    if (access == Access::store) allocation.stored_in = launch;
-    if (allocation.constant_in == launch && allocation.stored_in == launch)
+    const std::size_t number = (address - begin) / k_part;
+    Part& part = allocation.parts[number];
+    if (access == Access::constant) part.constant_in = launch;
+    if (access == Access::store) part.stored_in = launch;
+    if (part.constant_in == launch && part.stored_in == launch)
         throw DeviceFault(k_launch_failed, where + ", which the same launch both stores into and reads as constant");
-    site.begin = begin;
-    site.bytes = allocation.bytes;
+    site.begin = begin + number * k_part;
+    site.bytes = std::min(k_part, allocation.bytes - number * k_part);
     site.launch = launch;
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "device.h"
 
@@ -32,14 +33,19 @@ class DeviceMemory {
     bool contains(std::uint64_t address, std::size_t bytes) const;
     std::size_t used_bytes() const { return used_bytes_; }
 
-    // Throws a DeviceFault for an access beyond any allocation or across its multiple, and for a store into one that
-    // the launch also reads as constant: a GPU may read what was there before.
+    // Throws a DeviceFault for an access beyond any allocation or across its multiple, and for a store into a part of
+    // one that the launch also reads as constant: a GPU may read what was there before.
     void find(std::uint64_t launch, Site& site, std::uint64_t address, std::size_t bytes, Access access);
 
  private:
+    // What a program may take for a buffer of its own (Backend::part_alignment).
+    static constexpr std::size_t k_part = 4096;
+    struct Part {
+        std::uint64_t constant_in = 0, stored_in = 0;  // the latest launch that read it so, and stored into it
+    };
     struct Allocation {
         std::size_t bytes = 0;
-        std::uint64_t constant_in = 0, stored_in = 0;  // the latest launch that read it so, and stored into it
+        std::vector<Part> parts;
     };
     using Allocations = std::map<std::uint64_t, Allocation>;
 

@@ -81,10 +81,9 @@ FN CoarseGradient coarse_gradient(const StepConstants c, uint i, GLOBAL const fl
     for (uint k = 0u; k < count; ++k) {
         const uint j = neighbor(c, list, i, k);
         const float4 x_j = position[j];
-        const CoarseSides sides = coarse_sides(home, coarse_place(c, x_j));
-        a = add_coarse_gradient(a, coarse_pull(c, c.gradient_scale * weight[j], quick_pair_of(x_i, x_j)), sides);
+        const CoarseShares shares = coarse_shares(home, coarse_place(c, x_j));
+        a = add_coarse_gradient(a, coarse_pull(c, c.gradient_scale * weight[j], quick_pair_of(x_i, x_j)), shares);
     }
-    a = coarse_cells_of(a);
     if (weight[i] > 0.0f) {
         const float4 s = factor[i];
         a.x.of[0] += s.x;

@@ -36,21 +36,25 @@ FN Real3 coarse_place(const StepConstants c, REAL4 x) {
     return place;
 }
 
-// 1 where a neighbour in the coarse cell `place` is in another one than `home` along all the axes of bits k, else 0.
-typedef struct CoarseSides {
-    REAL is_beyond[8];
-} CoarseSides;
+// 1 for the one of the 8 coarse cells around a particle in `home` that a neighbour in `place` is in, 0 for the others.
+typedef struct CoarseShares {
+    REAL of[8];
+} CoarseShares;
 
-FN CoarseSides coarse_sides(float4 home, Real3 place) {
+FN CoarseShares coarse_shares(float4 home, Real3 place) {
     const REAL one = REAL_ZERO + 1.0f;
-    CoarseSides sides;
-    sides.is_beyond[0] = one;
-    sides.is_beyond[1] = place.x != home.x ? one : REAL_ZERO;
-    sides.is_beyond[2] = place.y != home.y ? one : REAL_ZERO;
-    sides.is_beyond[3] = sides.is_beyond[1] * sides.is_beyond[2];
-    sides.is_beyond[4] = place.z != home.z ? one : REAL_ZERO;
-    for (uint k = 5u; k < 8u; ++k) sides.is_beyond[k] = sides.is_beyond[4] * sides.is_beyond[k - 4u];
-    return sides;
+    const REAL x = place.x != home.x ? one : REAL_ZERO, y = place.y != home.y ? one : REAL_ZERO,
+               z = place.z != home.z ? one : REAL_ZERO;
+    CoarseShares shares;
+    shares.of[0] = (one - x) * (one - y);
+    shares.of[1] = x * (one - y);
+    shares.of[2] = (one - x) * y;
+    shares.of[3] = x * y;
+    for (uint k = 0u; k < 4u; ++k) {
+        shares.of[k + 4u] = shares.of[k] * z;
+        shares.of[k] = shares.of[k] * (one - z);
+    }
+    return shares;
 }
 
 // What a neighbour adds to G of a constant; weight: m_j times c.gradient_scale where it takes part, else 0.
@@ -58,32 +62,16 @@ FN Real3 coarse_pull(const StepConstants c, REAL weight, Pair pair) {
     return add_gradient(zero_vector(), c, weight, pair);
 }
 
-// Sums, for now, over all neighbours that are beyond along the axes of bits k, whether or not along others.
-FN CoarseSums add_beyond(CoarseSums sums, REAL pull, CoarseSides sides) {
-    sums.of[0] += pull;
-    for (uint k = 1u; k < 8u; ++k) sums.of[k] += sides.is_beyond[k] * pull;
+// By multiplication, so that a cell with nothing to add gets exactly nothing: its row must be one of zeros.
+FN CoarseSums add_shared(CoarseSums sums, REAL pull, CoarseShares shares) {
+    for (uint k = 0u; k < 8u; ++k) sums.of[k] += shares.of[k] * pull;
     return sums;
 }
 
-FN CoarseGradient add_coarse_gradient(CoarseGradient sums, Real3 pull, CoarseSides sides) {
-    sums.x = add_beyond(sums.x, pull.x, sides);
-    sums.y = add_beyond(sums.y, pull.y, sides);
-    sums.z = add_beyond(sums.z, pull.z, sides);
-    return sums;
-}
-
-// From those sums to the coarse cells.
-FN CoarseSums apart(CoarseSums sums) {
-    for (uint bit = 1u; bit < 8u; bit *= 2u)
-        for (uint k = 0u; k < 8u; ++k)
-            if ((k & bit) == 0u) sums.of[k] -= sums.of[k + bit];
-    return sums;
-}
-
-FN CoarseGradient coarse_cells_of(CoarseGradient sums) {
-    sums.x = apart(sums.x);
-    sums.y = apart(sums.y);
-    sums.z = apart(sums.z);
+FN CoarseGradient add_coarse_gradient(CoarseGradient sums, Real3 pull, CoarseShares shares) {
+    sums.x = add_shared(sums.x, pull.x, shares);
+    sums.y = add_shared(sums.y, pull.y, shares);
+    sums.z = add_shared(sums.z, pull.z, shares);
     return sums;
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 // Particles a thread takes at a time: long enough to hide the counter, short enough to share out a splash evenly.
 constexpr std::size_t k_grain = 512;
-static_assert(k_grain % k_list_group == 0, "a thread takes whole lists");
+static_assert(k_grain / 8 % k_list_group == 0, "a thread takes whole lists");
 constexpr int k_most_arguments = 16;
 
 class CpuBuffer : public Buffer {

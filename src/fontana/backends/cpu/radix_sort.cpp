@@ -9,7 +9,7 @@ namespace {
 constexpr int k_digit_bits = 11;  // 2048 counters of a chunk stay in the first-level cache
 constexpr std::size_t k_digits = std::size_t{1} << k_digit_bits;
 constexpr std::size_t k_chunk = 16384;
-constexpr std::size_t k_grain = 65536;
+constexpr std::size_t k_grain = 8192;
 
 }  // namespace
 

@@ -68,12 +68,22 @@ void ThreadPool::run(std::size_t count, std::size_t grain, const std::function<v
     if (error_) std::rethrow_exception(error_);
 }
 
+// Shorter towards the end, so that all threads come to it together.
+std::size_t ThreadPool::piece_after(std::size_t begin) const {
+    const std::size_t left = count_ - begin, least = std::max<std::size_t>(1, grain_ / 8);
+    const std::size_t fair = left / (2 * (workers_.size() + 1)) / least * least;
+    return std::min(left, std::clamp(fair, least, grain_));
+}
+
 void ThreadPool::take_pieces() {
     try {
         for (;;) {
-            const std::size_t begin = next_.fetch_add(grain_);
-            if (begin >= count_) return;
-            (*body_)(begin, std::min(begin + grain_, count_));
+            std::size_t begin = next_, end;
+            do {
+                if (begin >= count_) return;
+                end = begin + piece_after(begin);
+            } while (!next_.compare_exchange_weak(begin, end));
+            (*body_)(begin, end);
         }
     } catch (...) {
         std::lock_guard<std::mutex> lock(mutex_);

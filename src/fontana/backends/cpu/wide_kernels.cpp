@@ -230,7 +230,7 @@ struct CoarseNeighbors {
     static constexpr uint k_room = 8;
     Vec4 x[k_room];
     Vec weight[k_room];
-    CoarseSides sides[k_room];
+    CoarseShares shares[k_room];
     uint count = 0;
 };
 
@@ -243,8 +243,7 @@ struct CoarseColumns {
 template <REAL Real3::* axis>
 Vec8 coarse_column(const CoarseNeighbors& neighbors, const Real3* pull) {
     CoarseSums sums{};
-    for (uint k = 0; k < neighbors.count; ++k) sums = add_beyond(sums, pull[k].*axis, neighbors.sides[k]);
-    sums = apart(sums);
+    for (uint k = 0; k < neighbors.count; ++k) sums = add_shared(sums, pull[k].*axis, neighbors.shares[k]);
     return sums_of(sums.of);
 }
 
@@ -272,7 +271,7 @@ void coarse_columns(const StepConstants& c, const Members& members, uint from, c
         neighbors.x[k] = x_j;
         // What is beyond the end of the list has no mass.
         neighbors.weight[k] = x_j.w > 0.0f ? c.gradient_scale * gather(weight, j) : Vec{};
-        neighbors.sides[k] = coarse_sides(home, coarse_place(c, x_j));
+        neighbors.shares[k] = coarse_shares(home, coarse_place(c, x_j));
         if (neighbors.count == CoarseNeighbors::k_room) add_all();
     });
     add_all();
