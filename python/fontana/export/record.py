@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import glob
 import json
 from pathlib import Path
 
@@ -76,7 +77,7 @@ class Record:
 
     def _refuse_foreign_files(self) -> None:
         target = self._target
-        foreign = sorted(target.folder.glob(f"{target.name}.[0-9][0-9][0-9][0-9]{target.suffix}"))
+        foreign = sorted(target.folder.glob(glob.escape(target.pattern.name).replace("#", "[0-9]")))
         if foreign:
             raise _core.BadInput(
                 f'"{foreign[0]}" is there, but no {target.record.name} that speaks of it; '
