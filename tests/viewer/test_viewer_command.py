@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -64,6 +65,36 @@ def test_what_cannot_be_shown_is_refused(tmp_path, drop_cache):
     code, text = view(drop_cache, "--set", "fluid.viscosity=3")
     assert (code, "played as it is" in text) == (2, True)
     assert view("fountain", "--size", "0x0")[0] == 2
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_closes_the_window_and_completes_the_movie(screen, drop_file, tmp_path, number, code):
+    from imageio_ffmpeg import count_frames_and_secs
+
+    viewer = subprocess.Popen(
+        [*COMMAND, str(drop_file), "--size", "400x200"],
+        cwd=tmp_path,
+        env=screen.environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        screen.do("search", "--sync", "--name", "^drop - Fontana$", "windowfocus", "--sync", "key", "m")
+        end = time.monotonic() + PATIENCE
+        while not list(tmp_path.glob(".drop.view.0001.mp4.*.part")):
+            assert viewer.poll() is None
+            assert time.monotonic() < end
+            time.sleep(0.05)
+        viewer.send_signal(number)
+        said, complaint = viewer.communicate(timeout=PATIENCE)
+    finally:
+        viewer.kill()
+    assert viewer.returncode == code
+    assert "drop.view.0001.mp4" in said
+    assert complaint.splitlines()[-1] == "fontana: the window was closed by a signal"
+    assert [path.name for path in tmp_path.glob("*drop.view*")] == ["drop.view.0001.mp4"]
+    assert count_frames_and_secs(str(tmp_path / "drop.view.0001.mp4"))[0] >= 1
 
 
 def test_a_window_closed_in_the_middle_of_a_frame(screen, drop_file):
