@@ -141,6 +141,8 @@ def test_what_cannot_be_is_one_sentence(fontana, splash: Path) -> None:
     line = error_line(fontana("export", splash, "-o", "s.usdz", code=2))
     assert "expected a name that ends in .usd, .usdc, .usda, .abc or .vdb" in line
     assert "did you mean .vdb?" in error_line(fontana("export", splash, "-o", "s.vbd", code=2))
+    line = error_line(fontana("export", splash, "-o", "/proc/s.usdc", code=6))
+    assert line == 'fontana: cannot write "/proc/s.usdc": No such file or directory'
     blocked = {"PYTHONPATH": str(Path(__file__).parent / "without_usd")}
     line = error_line(fontana("export", splash, "-o", "s.usdc", code=2, env=blocked))
     assert "USD needs usd-core, which is not here: pip install usd-core" in line

@@ -71,6 +71,10 @@ class Record:
     def add(self, entry: dict) -> None:
         """A file is on disk: {"frame", "source", "bytes", ...}. Raises IoError."""
         self._entries[entry["frame"]] = entry
+        self.publish()
+
+    def publish(self) -> None:
+        """Writes the record; before the first file too, which without it would count as another's. Raises IoError."""
         frames = [self._entries[frame] for frame in sorted(self._entries)]
         data = {"fontana": _core.version(), "settings": self._settings, "frames": frames}
         _core.publish_file(str(self._target.record), (json.dumps(data, indent=1) + "\n").encode())

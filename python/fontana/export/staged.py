@@ -25,6 +25,8 @@ def staged(path: Path) -> Iterator[Path]:
     temporary = path.with_name(f".{path.stem}.{os.getpid()}.tmp{path.suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        temporary.touch()  # where that fails, the system says why; the libraries do not
+        temporary.unlink()
         yield temporary
         _sync(temporary, os.O_RDWR)
         os.replace(temporary, path)
