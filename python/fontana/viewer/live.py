@@ -254,5 +254,5 @@ class LiveSource:
         """Seconds of this frame by launch, where solver.profile is on."""
         if not self._simulation.get("solver.profile"):
             return {}
-        before, self._profile = self._profile, {name: seconds for name, _, seconds in self._simulation.profile()}
+        before, self._profile = self._profile, {row.name: row.seconds for row in self._simulation.profile()}
         return {name: max(0.0, seconds - before.get(name, 0.0)) for name, seconds in self._profile.items()}
