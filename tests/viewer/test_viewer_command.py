@@ -40,6 +40,11 @@ def view(*words, env=None):
     return done.returncode, done.stderr.strip()
 
 
+def focus_window(screen):
+    """Waits for the viewer's window; one that is not on the screen yet cannot have the keys."""
+    screen.do("search", "--sync", "--onlyvisible", "--name", "^drop - Fontana$", "windowfocus", "--sync")
+
+
 def test_the_help_has_examples():
     done = subprocess.run([*COMMAND, "--help"], capture_output=True, text=True, timeout=PATIENCE)
     assert "fontana view out/fountain" in done.stdout
@@ -80,7 +85,8 @@ def test_a_signal_closes_the_window_and_completes_the_movie(screen, drop_file, t
         text=True,
     )
     try:
-        screen.do("search", "--sync", "--name", "^drop - Fontana$", "windowfocus", "--sync", "key", "m")
+        focus_window(screen)
+        screen.do("key", "m")
         end = time.monotonic() + PATIENCE
         while not list(tmp_path.glob(".drop.view.0001.mp4.*.part")):
             assert viewer.poll() is None
@@ -104,7 +110,7 @@ def test_a_window_closed_in_the_middle_of_a_frame(screen, drop_file):
         [*COMMAND, *words], env=screen.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     try:
-        screen.do("search", "--sync", "--name", "^drop - Fontana$", "windowfocus", "--sync")
+        focus_window(screen)
         time.sleep(0.5)  # into the frame
         assert viewer.poll() is None
         screen.do("key", "q")
