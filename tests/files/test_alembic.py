@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import resource
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 from alembic3d import Abc, AbcGeom
+from command_line import error_line
 
 from fontana.runs.cache import Cache
 
@@ -41,6 +44,19 @@ def test_a_skipped_frame_repeats_the_one_before(fontana, harmed: Path, tmp_path:
     assert schema.getNumSamples() == 12
     counts = [len(schema.getValue(index).getPositions()) for index in range(12)]
     assert counts[2] == counts[1] and counts[6] == counts[7] == counts[5]
+
+
+def test_a_full_disk_is_one_sentence(fontana, splash: Path, tmp_path: Path) -> None:
+    """A limit on the size of a file: it ends among the frames, and where the archive is closed."""
+    command = ["export", splash, "-o", "s.abc", "--frames", "1-4", "--quiet"]
+    fontana(*command)
+    whole = (tmp_path / "s.abc").read_bytes()
+    for limit in (len(whole) // 2, len(whole) - 8):
+        limit_files = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (limit, limit))
+        done = fontana(*command, code=6, preexec_fn=limit_files)
+        assert 'cannot write "s.abc"' in error_line(done)
+        assert [path.name for path in tmp_path.iterdir()] == ["s.abc"]
+        assert (tmp_path / "s.abc").read_bytes() == whole
 
 
 def test_frames_without_particles(fontana, empty: Path, tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 import trimesh
 from command_line import error_line, fontana_command
+from pxr import Usd
 from small_scenes import SPLASH_FRAMES as FRAMES
 
 from fontana import bgeo
@@ -35,6 +36,20 @@ def test_a_surface_a_frame_beside_the_run(fontana, splash: Path, tmp_path: Path)
         assert trimesh.load(tmp_path / "water" / name).is_watertight
     again = fontana("mesh", "splash", "-o", "water/w.ply", *COARSE)
     assert "12 of them there already" in again.stdout and "done: 0 of 12" in again.stdout
+
+
+def test_the_number_stands_where_it_was_asked_for(fontana, splash: Path, tmp_path: Path) -> None:
+    common = ["mesh", splash, "--frames", "9-10", *COARSE]
+    done = fontana(*common, "-o", "w_##.usdc")
+    assert {path.name for path in tmp_path.glob("*.usdc")} == {"w_09.usdc", "w_10.usdc"}
+    assert "w_09.usdc to w_10.usdc" in done.stdout
+    stage = Usd.Stage.Open(str(tmp_path / "w.usda"))
+    surface = stage.GetPrimAtPath("/splash/surface")
+    counts = [len(surface.GetAttribute("points").Get(frame)) for frame in (9, 10)]
+    assert min(counts) > 100 and counts[0] != counts[1]
+    assert "2 of them there already" in fontana(*common, "-o", "w_##.usdc").stdout
+    (tmp_path / "w.usdc.json").unlink()
+    assert '"w_09.usdc" is there, but no w.usdc.json' in error_line(fontana(*common, "-o", "w_##.usdc", code=2))
 
 
 def test_by_default_bgeo_in_a_folder_of_the_run(fontana, harmed: Path) -> None:
@@ -118,11 +133,11 @@ def test_workers_do_not_outlive_a_killed_parent(splash: Path, tmp_path: Path) ->
     command = fontana_command("mesh", splash, "-o", "w.ply", "--cell-size", 0.2, "--jobs", 2, "--json")
     process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True, start_new_session=True)
     assert '"start"' in process.stdout.readline()
+    assert (tmp_path / "w.ply.json").exists(), "a file without it is refused as another's"
     time.sleep(2)
     process.kill()
     process.stdout.read()  # ends once no process has the other end
     process.wait()
-    assert not list(tmp_path.glob("*.ply")) or (tmp_path / "w.ply.json").exists()
 
 
 def test_a_full_disk_is_one_sentence_and_keeps_what_is_done(fontana, splash: Path, tmp_path: Path) -> None:
@@ -157,7 +172,7 @@ def test_what_cannot_be_is_one_sentence(fontana, splash: Path, tmp_path: Path) -
     assert "expected a name that ends in .bgeo, .ply, .obj" in refusal(splash, "-o", "w.stl")
     assert "did you mean .ply?" in refusal(splash, "-o", "w.pyl")
     assert "it has no suffix" in refusal(splash, "-o", "water")
-    assert "expected a name before the number" in refusal(splash, "-o", "####.ply")
+    assert "expected a name beside the number" in refusal(splash, "-o", "####.ply")
     assert '"nowhere" has no run.json' in refusal("nowhere")
     assert "there is no frame 48" in refusal(splash, "--frames", "1-48")
     assert "runs backwards; use 2-5" in refusal(splash, "--frames", "5-2")

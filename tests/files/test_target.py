@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -12,12 +13,21 @@ from fontana.runs.cache import Cache
 from fontana.runs.frame_numbers import frame_list
 
 
-@pytest.mark.parametrize("text", ["out/w.ply", "out/w.####.ply", "out/w####.PLY", "out/w.#.ply"])
-def test_a_name_with_or_without_number(text: str) -> None:
+@pytest.mark.parametrize(
+    ("text", "file"),
+    [
+        ("out/w.ply", "out/w.0007.ply"),
+        ("out/w.####.ply", "out/w.0007.ply"),
+        ("out/w####.PLY", "out/w0007.ply"),
+        ("out/w_##.ply", "out/w_07.ply"),
+        ("out/w.###.v2.ply", "out/w.007.v2.ply"),
+    ],
+)
+def test_the_number_stands_where_the_name_has_it(text: str, file: str) -> None:
     target = parse_target(text, [".ply"])
-    assert target.frame(7) == Path("out/w.0007.ply")
-    assert target.frame(12345) == Path("out/w.12345.ply")
-    assert target.record == Path("out/w.ply.json")
+    assert target.frame(7) == Path(file)
+    assert target.frame(12345) == Path(re.sub("0*7", "12345", file))
+    assert target.record == Path(re.sub("[._-]?0*7", "", file) + ".json")
 
 
 def test_a_range_is_a_list_of_frames(splash: Path) -> None:

@@ -137,10 +137,20 @@ def test_a_full_disk_leaves_nothing_half_done(fontana, splash: Path, tmp_path: P
     assert (tmp_path / "s.usdc").read_text() == "what was there"
 
 
+def test_a_cache_without_a_sound_frame_replaces_nothing(fontana, harmed: Path, tmp_path: Path) -> None:
+    for suffix in ("usdc", "abc"):
+        (tmp_path / f"s.{suffix}").write_text("what was there")
+        done = fontana("export", harmed, "-o", f"s.{suffix}", "--frames", "7-8", "--quiet", code=6)
+        assert "none of the frames can be read" in error_line(done)
+        assert (tmp_path / f"s.{suffix}").read_text() == "what was there"
+
+
 def test_what_cannot_be_is_one_sentence(fontana, splash: Path) -> None:
     line = error_line(fontana("export", splash, "-o", "s.usdz", code=2))
     assert "expected a name that ends in .usd, .usdc, .usda, .abc or .vdb" in line
     assert "did you mean .vdb?" in error_line(fontana("export", splash, "-o", "s.vbd", code=2))
+    line = error_line(fontana("export", splash, "-o", "/proc/s.usdc", code=6))
+    assert line == 'fontana: cannot write "/proc/s.usdc": No such file or directory'
     blocked = {"PYTHONPATH": str(Path(__file__).parent / "without_usd")}
     line = error_line(fontana("export", splash, "-o", "s.usdc", code=2, env=blocked))
     assert "USD needs usd-core, which is not here: pip install usd-core" in line

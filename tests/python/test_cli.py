@@ -160,7 +160,7 @@ def test_verify_notices_a_last_bit_in_strict_and_a_small_error_elsewhere(monkeyp
         return results
 
     monkeypatch.setattr(verify_module, "_results", changed)
-    monkeypatch.setattr(verify_module, "_devices", lambda: ([("cpu", 0)], {}))
+    monkeypatch.setattr(verify_module, "_devices", lambda: [("cpu", 0)])
     rows, _ = verify_module.compare_all([method])
     assert [row["passed"] for row in rows] == [False, True, True, True]
     assert calls[0] == calls[1]

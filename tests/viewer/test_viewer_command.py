@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -39,6 +40,11 @@ def view(*words, env=None):
     return done.returncode, done.stderr.strip()
 
 
+def focus_window(screen):
+    """Waits for the viewer's window; one that is not on the screen yet cannot have the keys."""
+    screen.do("search", "--sync", "--onlyvisible", "--name", "^drop - Fontana$", "windowfocus", "--sync")
+
+
 def test_the_help_has_examples():
     done = subprocess.run([*COMMAND, "--help"], capture_output=True, text=True, timeout=PATIENCE)
     assert "fontana view out/fountain" in done.stdout
@@ -66,6 +72,37 @@ def test_what_cannot_be_shown_is_refused(tmp_path, drop_cache):
     assert view("fountain", "--size", "0x0")[0] == 2
 
 
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_closes_the_window_and_completes_the_movie(screen, drop_file, tmp_path, number, code):
+    from imageio_ffmpeg import count_frames_and_secs
+
+    viewer = subprocess.Popen(
+        [*COMMAND, str(drop_file), "--size", "400x200"],
+        cwd=tmp_path,
+        env=screen.environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        focus_window(screen)
+        screen.do("key", "m")
+        end = time.monotonic() + PATIENCE
+        while not list(tmp_path.glob(".drop.view.0001.mp4.*.part")):
+            assert viewer.poll() is None
+            assert time.monotonic() < end
+            time.sleep(0.05)
+        viewer.send_signal(number)
+        said, complaint = viewer.communicate(timeout=PATIENCE)
+    finally:
+        viewer.kill()
+    assert viewer.returncode == code
+    assert "drop.view.0001.mp4" in said
+    assert complaint.splitlines()[-1] == "fontana: the window was closed by a signal"
+    assert [path.name for path in tmp_path.glob("*drop.view*")] == ["drop.view.0001.mp4"]
+    assert count_frames_and_secs(str(tmp_path / "drop.view.0001.mp4"))[0] >= 1
+
+
 def test_a_window_closed_in_the_middle_of_a_frame(screen, drop_file):
     """A frame of 100 000 substeps, and a key that quits."""
     words = [str(drop_file), "--set", "time.substeps=100000", "--set", "time.timestep=1", "--size", "400x200"]
@@ -73,7 +110,7 @@ def test_a_window_closed_in_the_middle_of_a_frame(screen, drop_file):
         [*COMMAND, *words], env=screen.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     try:
-        screen.do("search", "--sync", "--name", "^drop - Fontana$", "windowfocus", "--sync")
+        focus_window(screen)
         time.sleep(0.5)  # into the frame
         assert viewer.poll() is None
         screen.do("key", "q")

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from small_scenes import DROP
 
+from fontana import _core
 from fontana.gl.camera import Camera
 from fontana.scene import load_scene
 from fontana.tables import parameters
@@ -63,16 +64,26 @@ def test_a_refused_value_becomes_a_message(model):
     assert "elasticity" in model.messages.current()[1].text
 
 
-def test_keys_go_round_the_backends_and_schemes(model):
+def test_a_key_goes_round_the_schemes(model):
     seen = []
     for _ in parameters()["solver.neighbors"].choices:
         model.next_neighbors()
         seen.append(model.source.settings.get("solver.neighbors"))
     assert sorted(seen) == sorted(parameters()["solver.neighbors"].choices)
     assert seen[-1] == "grid"
-    before = model.source.settings.get("solver.backend")
+
+
+def test_a_key_goes_round_the_backends_that_are_here(model):
+    here = {device.backend for device in _core.devices() if device.available}
+    assert set(model.absent_choices("solver.backend")) == set(parameters()["solver.backend"].choices) - here - {"auto"}
+    seen = []
+    for _ in range(len(here) + 1):
+        model.next_backend()
+        seen.append(model.source.settings.get("solver.backend"))
+    assert sorted(seen) == sorted(here | {"auto"})
+    model.source.settings.set("solver.backend", "cuda")  # as a scene may say
     model.next_backend()
-    assert model.source.settings.get("solver.backend") != before
+    assert model.source.settings.get("solver.backend") in here | {"auto"}
 
 
 def test_colliders_that_are_hidden_are_not_drawn(model):

@@ -65,6 +65,17 @@ def test_it_plays_pauses_steps_and_restarts(live):
     assert source.snapshot.data.particle_count == 0
 
 
+def test_phases_are_by_kernel_where_the_profile_is_on(live):
+    source = live()
+    frames_on(source, 1)
+    assert set(source.snapshot.phases) == {"simulate", "read"}
+    source.set("solver.profile", 1)
+    frames_on(source, 5)
+    kernels = {name: seconds for name, seconds in source.snapshot.phases.items() if name not in ("simulate", "read")}
+    assert "pressure_gradient" in kernels
+    assert 0 < sum(kernels.values()) <= source.snapshot.phases["simulate"], "they are this frame's, not those of all"
+
+
 def test_frames_are_those_of_a_run(live):
     source = live()
     frames_on(source, 3)

@@ -11,6 +11,7 @@ from small_scenes import DROP
 from virtual_screen import virtual_screen
 
 from fontana.scene import load_scene
+from fontana.tables import parameters
 from fontana.viewer.player import CachePlayer
 
 SIZE = (680, 270)  # few pixels: the renderer on the CPU takes its time for each
@@ -178,8 +179,8 @@ def picture_size(desk):
     return desk.viewer.picture._texture.size
 
 
-def test_a_number_is_typed_into_the_panel(sit_down, monkeypatch):
-    """Ctrl and a click on the field, the digits, Return."""
+def place_of_field(desk, monkeypatch, text):
+    """A point in the widget beside a label of the panel."""
     from imgui_bundle import imgui
 
     from fontana.viewer import fields
@@ -191,17 +192,48 @@ def test_a_number_is_typed_into_the_panel(sit_down, monkeypatch):
         label(text, *rest)
         places[text] = imgui.get_cursor_screen_pos()
 
-    monkeypatch.setattr(fields, "label", noticing)
+    with monkeypatch.context() as patch:
+        patch.setattr(fields, "label", noticing)
+        desk.turn(2)
+    return round(places[text].x + 40), round(places[text].y + 8)
+
+
+def test_a_number_is_typed_into_the_panel(sit_down, monkeypatch):
+    """Ctrl and a click on the field, the digits, Return."""
     desk = sit_down(size=TALL)
-    desk.turn(2)
     for text, expected in (("12.5", 12.5), ("0.25", 0.25)):
-        place = places["Rest density"]
-        desk.do("mousemove", round(place.x + 40), round(place.y + 8))
+        desk.do("mousemove", *place_of_field(desk, monkeypatch, "Rest density"))
         desk.do("keydown", "ctrl", "click", 1, "keyup", "ctrl")
         desk.do("key", "ctrl+a", "type", "--delay", 30, text)
         desk.press("Return")
         assert desk.source.settings.get("fluid.rest_density") == expected
     assert desk.source.is_playing is False, "what is typed into a field is no key of the viewer"
+
+
+def test_the_panel_takes_only_backends_that_are_here(sit_down, monkeypatch):
+    """The list is opened with the mouse; a click on each of its words does what it says, or nothing."""
+    from imgui_bundle import imgui
+
+    places = {}
+    selectable = imgui.selectable
+
+    def noticing(word, *rest):
+        result = selectable(word, *rest)
+        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        places[word] = (round(low.x + 12), round(0.5 * (low.y + high.y)))
+        return result
+
+    desk = sit_down(size=TALL)
+    monkeypatch.setattr(imgui, "selectable", noticing)
+    for word in parameters()["solver.backend"].choices:
+        field = place_of_field(desk, monkeypatch, "Backend")
+        desk.do("mousemove", *field, "click", 1)
+        desk.turn(3)
+        desk.do("mousemove", *places[word], "click", 1)
+        is_here = word not in desk.source.absent_backends
+        assert (desk.source.settings.get("solver.backend") == word) == is_here, word
+        if not is_here:  # the list is still open
+            desk.do("mousemove", *field, "click", 1)
 
 
 def test_backends_and_schemes_are_switched_by_key(sit_down, opencl_device):

@@ -116,7 +116,8 @@ def mesh(
         result = make_sequence(cache, chosen, make, options, progress)
         if target.suffix in usd.SUFFIXES and result.there:
             stage = target.folder / f"{target.name}.usda"
-            usd.write_clips_stage(stage, target.pattern.name, result.there, _layout(cache, result.there))
+            layers = {frame: target.frame(frame).name for frame in result.there}
+            usd.write_clips_stage(stage, layers, _layout(cache, result.there))
             progress.note(f"{stage} plays what is there")
         result.raise_if_incomplete()
         progress.finish([target.frame(frame) for frame in chosen])

@@ -10,6 +10,7 @@ import click
 import numpy as np
 
 from fontana import _core
+from fontana.backends import absent_backends
 from fontana.cli.information import print_table
 from fontana.tables import parameters
 
@@ -57,11 +58,11 @@ def verify(methods: tuple[str, ...], as_json: bool) -> None:
 
 def compare_all(methods: Iterable[str] = METHODS) -> tuple[list[dict], dict[str, str]]:
     """A row for each combination, and why backends are missing. Raises the library's errors."""
-    devices, missing = _devices()
+    devices = _devices()
     rows = []
     for method in methods:
         rows += _compare(method, devices)
-    return rows, missing
+    return rows, absent_backends()
 
 
 def _compare(method: str, devices: list[tuple[str, int]]) -> list[dict]:
@@ -88,20 +89,15 @@ def _compare(method: str, devices: list[tuple[str, int]]) -> list[dict]:
     return rows
 
 
-def _devices() -> tuple[list[tuple[str, int]], dict[str, str]]:
-    """Each as its backend and its number there, the CPU first; and the reasons of backends that have none."""
+def _devices() -> list[tuple[str, int]]:
+    """Each that is available, as its backend and its number there, the CPU first."""
     here: list[tuple[str, int]] = []
-    missing = {}
     numbers: dict[str, int] = {}
     for device in _core.devices():
         number = numbers[device.backend] = numbers.get(device.backend, -1) + 1
         if device.available:
             here.append((device.backend, number))
-        else:
-            missing[device.backend] = device.reason
-    backends = {backend for backend, _ in here}
-    here.sort(key=lambda device: device[0] != "cpu")
-    return here, {name: reason for name, reason in missing.items() if name not in backends}
+    return sorted(here, key=lambda device: device[0] != "cpu")
 
 
 def _scheme(row: dict) -> list:

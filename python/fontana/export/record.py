@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import glob
 import json
 from pathlib import Path
 
@@ -70,13 +71,17 @@ class Record:
     def add(self, entry: dict) -> None:
         """A file is on disk: {"frame", "source", "bytes", ...}. Raises IoError."""
         self._entries[entry["frame"]] = entry
+        self.publish()
+
+    def publish(self) -> None:
+        """Writes the record; before the first file too, which without it would count as another's. Raises IoError."""
         frames = [self._entries[frame] for frame in sorted(self._entries)]
         data = {"fontana": _core.version(), "settings": self._settings, "frames": frames}
         _core.publish_file(str(self._target.record), (json.dumps(data, indent=1) + "\n").encode())
 
     def _refuse_foreign_files(self) -> None:
         target = self._target
-        foreign = sorted(target.folder.glob(f"{target.name}.[0-9][0-9][0-9][0-9]{target.suffix}"))
+        foreign = sorted(target.folder.glob(glob.escape(target.pattern.name).replace("#", "[0-9]")))
         if foreign:
             raise _core.BadInput(
                 f'"{foreign[0]}" is there, but no {target.record.name} that speaks of it; '

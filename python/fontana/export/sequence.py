@@ -90,6 +90,8 @@ def make_sequence(
             for frame in frames
             if not record.has(frame, cache.hash(frame))
         ]
+        if tasks:
+            record.publish()
         progress.start(str(target.pattern), len(frames), len(frames) - len(tasks))
         skipped: dict[int, str] = {}
         for entry in _run(tasks, make, options.jobs, stop):

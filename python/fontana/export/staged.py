@@ -13,6 +13,8 @@ from pathlib import Path
 
 from fontana import _core
 
+_NEXT_TO_NOTHING = 2**20  # bytes: less than one write of those libraries
+
 
 @contextlib.contextmanager
 def staged(path: Path) -> Iterator[Path]:
@@ -23,6 +25,8 @@ def staged(path: Path) -> Iterator[Path]:
     temporary = path.with_name(f".{path.stem}.{os.getpid()}.tmp{path.suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        temporary.touch()  # where that fails, the system says why; the libraries do not
+        temporary.unlink()
         yield temporary
         _sync(temporary, os.O_RDWR)
         os.replace(temporary, path)
@@ -50,6 +54,6 @@ def _reason(error: Exception, folder: Path) -> str:
         return error.strerror
     with contextlib.suppress(OSError):
         disk = os.statvfs(folder)
-        if disk.f_blocks > 0 and disk.f_bavail == 0:  # /proc and its like have no blocks at all
+        if disk.f_blocks > 0 and disk.f_bavail * disk.f_frsize < _NEXT_TO_NOTHING:  # /proc and its like have no blocks
             return "the disk is full"
     return " ".join(str(error).split())[:200]

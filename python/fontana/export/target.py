@@ -9,25 +9,31 @@ from pathlib import Path
 
 from fontana import _core
 from fontana.file_suffix import check_suffix
+from fontana.runs.frame_numbers import is_numbered, numbered
 
-_NUMBER = re.compile(r"\.?#+$")
+_NUMBER = re.compile(r"[._-]?#+")
+_USUAL_NUMBER = ".####"  # a dot before four digits, as the frames of a run have it
 
 
 @dataclass(frozen=True)
 class Target:
-    """The file that -o names, without its number: `folder`/`name``suffix`."""
+    """The files that -o names.
 
-    folder: Path
+    pattern  the file of a frame, with # where its number stands
+    name     the same without number and suffix
+    suffix   in small letters
+    """
+
+    pattern: Path
     name: str
     suffix: str
 
-    def frame(self, frame: int) -> Path:
-        """water.0001.ply: a dot before a number of four digits, as the frames of a run have it."""
-        return self.folder / f"{self.name}.{frame:04d}{self.suffix}"
-
     @property
-    def pattern(self) -> Path:
-        return self.folder / f"{self.name}.####{self.suffix}"
+    def folder(self) -> Path:
+        return self.pattern.parent
+
+    def frame(self, frame: int) -> Path:
+        return self.pattern.with_name(numbered(self.pattern.name, frame))
 
     @property
     def whole(self) -> Path:
@@ -46,5 +52,6 @@ def parse_target(text: str, suffixes: Iterable[str]) -> Target:
     suffix = check_suffix(path, suffixes)
     name = _NUMBER.sub("", path.stem)
     if not name:
-        raise _core.BadInput(f'-o "{text}": expected a name before the number, such as water.####{path.suffix}')
-    return Target(path.parent, name, suffix)
+        raise _core.BadInput(f'-o "{text}": expected a name beside the number, such as water.####{path.suffix}')
+    number = "" if is_numbered(path.stem) else _USUAL_NUMBER
+    return Target(path.parent / f"{path.stem}{number}{suffix}", name, suffix)

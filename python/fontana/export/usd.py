@@ -6,7 +6,7 @@ Time codes are frame numbers. A stage says its frame rate, that Y is up, and how
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -103,21 +103,19 @@ def write_mesh_frame(mesh: Mesh, frame: int, path: Path, layout: StageLayout) ->
         _save(stage)
 
 
-def write_clips_stage(path: Path, pattern: str, frames: list[int], layout: StageLayout) -> None:
-    """A small stage that plays the layers `pattern` (water.####.usdc, beside `path`) as value clips. Raises IoError."""
+def write_clips_stage(path: Path, files: Mapping[int, str], layout: StageLayout) -> None:
+    """A small stage that plays the layers `files`, by frame and beside `path`, as value clips. Raises IoError."""
     usd, sdf = require("pxr.Usd", "usd-core", "USD"), require("pxr.Sdf", "usd-core", "USD")
-    files = [pattern.replace("####", f"{frame:04d}") for frame in frames]
     with staged(path) as temporary:
         stage = _new_stage(temporary, layout)
         prim = _define_mesh(stage, layout).GetPrim()
         clips = usd.ClipsAPI(prim)
         clips.SetClipPrimPath(str(prim.GetPath()))
-        clips.SetClipAssetPaths([sdf.AssetPath(f"./{file}") for file in files])
-        clips.SetClipActive([(frame, index) for index, frame in enumerate(frames)])
-        clips.SetClipTimes([(frame, frame) for frame in frames])
-        manifest = usd.ClipsAPI.GenerateClipManifestFromLayers(
-            [sdf.Layer.FindOrOpen(str(path.parent / files[0]))], prim.GetPath()
-        )
+        clips.SetClipAssetPaths([sdf.AssetPath(f"./{file}") for file in files.values()])
+        clips.SetClipActive([(frame, index) for index, frame in enumerate(files)])
+        clips.SetClipTimes([(frame, frame) for frame in files])
+        first = sdf.Layer.FindOrOpen(str(path.parent / next(iter(files.values()))))
+        manifest = usd.ClipsAPI.GenerateClipManifestFromLayers([first], prim.GetPath())
         manifest_name = f"{path.stem}.clips.usda"
         with staged(path.parent / manifest_name) as temporary_manifest:
             manifest.Export(str(temporary_manifest))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-import re
 from pathlib import Path
 from typing import Protocol
 
@@ -13,8 +12,8 @@ import numpy as np
 from fontana import _core
 from fontana.file_suffix import check_suffix
 from fontana.render.film import FILM_SUFFIXES, Film
+from fontana.runs.frame_numbers import is_numbered, numbered
 
-_HASHES = re.compile(r"#+")
 _STAMP = "fontana"  # the text chunk of a PNG that says from what it was made
 
 
@@ -46,24 +45,24 @@ def open_output(path: Path, size: tuple[int, int], fps: float, frame_count: int,
         raise _core.IoError(f'cannot write to "{folder}": {error.strerror}') from error
     if suffix != ".png":
         return Film(path, size, fps)
-    if frame_count > 1 and not _HASHES.search(path.name):
-        numbered = path.with_name(f"{path.stem}.####.png")
-        raise _core.BadInput(f'-o "{path}": {frame_count} frames need a number in the name, as "{numbered}"')
+    if frame_count > 1 and not is_numbered(path.name):
+        better = path.with_name(f"{path.stem}.####.png")
+        raise _core.BadInput(f'-o "{path}": {frame_count} frames need a number in the name, as "{better}"')
     return Pictures(path, restart)
 
 
 class Pictures:
-    """A PNG for each frame; a run of # in the name becomes the frame's number."""
+    """A PNG for each frame, numbered where # stand in the name."""
 
     def __init__(self, pattern: Path, restart: bool):
         self.path, self.restart = pattern, restart
         self._files: list[Path] = []
 
-    def numbered(self, frame: int) -> Path:
-        return self.path.with_name(_HASHES.sub(lambda run: f"{frame:0{len(run[0])}d}", self.path.name))
+    def file(self, frame: int) -> Path:
+        return self.path.with_name(numbered(self.path.name, frame))
 
     def has(self, frame: int, stamp: str) -> bool:
-        path = self.numbered(frame)
+        path = self.file(frame)
         if self.restart or not os.path.exists(path):  # pathlib's raises for a name that is too long
             return False
         found = _read_stamp(path)
@@ -74,7 +73,7 @@ class Pictures:
         return found == stamp
 
     def write(self, frame: int, picture: np.ndarray, stamp: str) -> None:
-        path = self.numbered(frame)
+        path = self.file(frame)
         _core.publish_file(str(path), _png(picture, stamp))
         self._files.append(path)
 

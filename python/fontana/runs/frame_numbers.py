@@ -1,4 +1,4 @@
-"""The numbers of frames: out of text, in a sentence, and of those that could not be read."""
+"""The numbers of frames: out of text, in names of files, in a sentence, and of those that could not be read."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from fontana.errors import clean
 FRAMES_HELP = "Such as 1-48, 1-48/2 (every second) or 1,5,10-20. [default: all]"
 
 _RANGE = re.compile(r"(\d{1,9})(?:-(\d{1,9})(?:/(\d{1,9}))?)?")
+_HASHES = re.compile(r"#+")
 
 
 def parse_frames(text: str | None, known: Sequence[int]) -> list[int]:
@@ -36,6 +37,16 @@ def _parse_part(part: str, text: str, known: Sequence[int]) -> Iterable[int]:
         if frame not in known:
             raise _core.BadInput(f"--frames: there is no frame {frame}; the run has {known[0]} to {known[-1]}")
     return range(first, last + 1, step)
+
+
+def is_numbered(name: str) -> bool:
+    """Whether a name has a place for the number of a frame: a run of #."""
+    return "#" in name
+
+
+def numbered(name: str, frame: int) -> str:
+    """The name with the number of `frame` where # stand, of at least as many digits: water.##.ply is water.07.ply."""
+    return _HASHES.sub(lambda run: f"{frame:0{len(run[0])}d}", name)
 
 
 def frame_list(frames: Iterable[int]) -> str:

@@ -12,6 +12,7 @@ from fontana.errors import SceneError, clean
 from fontana.reader import read_json
 
 MANIFEST_NAME = "run.json"
+_ANEW = "fontana run --restart begins anew"
 HASHED_ON_RESUME = 3  # how many of the last frames are read in full; of the others the size is checked
 
 _NAME = {"type": "string", "pattern": r"^[^/\\\x00]+$"}  # a file in the folder, never a path out of it
@@ -56,14 +57,14 @@ class Manifest:
         try:
             data = read_json(path)
         except SceneError as error:
-            raise _core.BadInput(f"{error}; --restart begins anew") from error
+            raise _core.BadInput(f"{error}; {_ANEW}") from error
         errors = Draft202012Validator(_SCHEMA).iter_errors(data)
         error = next(errors, None)
         if error:
-            raise _core.BadInput(f"{path}: {clean(error.message, 120)}; --restart begins anew")
+            raise _core.BadInput(f"{path}: {clean(error.message, 120)}; {_ANEW}")
         numbers = [frame["frame"] for frame in data["frames"]]
         if numbers != list(range(1, len(numbers) + 1)):
-            raise _core.BadInput(f"{path}: its frames are not 1, 2, 3, ...; --restart begins anew")
+            raise _core.BadInput(f"{path}: its frames are not 1, 2, 3, ...; {_ANEW}")
         return cls(folder, data)
 
     def publish(self) -> None:

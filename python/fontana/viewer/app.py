@@ -6,12 +6,14 @@ from pathlib import Path
 
 import click
 
+from fontana.runs.runner import StoppedError
 from fontana.scene import Scene
 from fontana.viewer.glfw_window import GlfwWindow, import_libraries
 
 
 def open_viewer(what: Scene | Path, size: tuple[int, int], is_playing: bool) -> None:
-    """Shows a scene live, or the run in a folder. Raises DeviceUnavailable without a display, BadInput for no run."""
+    """Shows a scene live, or the run in a folder. Raises DeviceUnavailable without a display, BadInput for no run,
+    StoppedError after Ctrl-C and SIGTERM, when a movie that was being made is complete."""
     import_libraries()
     from fontana.viewer.live import LiveSource
     from fontana.viewer.model import ViewerModel
@@ -25,7 +27,7 @@ def open_viewer(what: Scene | Path, size: tuple[int, int], is_playing: bool) -> 
             model = ViewerModel(source)
             viewer = ViewerWindow(model, window)
             try:
-                viewer.run()
+                stopped = viewer.run()
             finally:
                 window.hide()
                 said = len(model.messages.history)
@@ -36,3 +38,5 @@ def open_viewer(what: Scene | Path, size: tuple[int, int], is_playing: bool) -> 
             window.close()
     finally:
         source.close()
+    if stopped:
+        raise StoppedError(stopped, "the window was closed by a signal")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import textwrap
+from collections.abc import Mapping
+from types import MappingProxyType
 
 from imgui_bundle import imgui
 
@@ -11,6 +13,8 @@ from fontana.units import readable
 from fontana.viewer.look import ACCENT
 
 _HELP_WIDTH = 64  # characters
+_REASON_WIDTH = 48
+_NONE: Mapping[str, str] = MappingProxyType({})
 _WORKED_OUT = ("derived", "automatic")  # what the table of parameters says of some zeros: "0: derived"
 _MOST_FLOAT = 1e30  # a drag knows no infinity
 
@@ -44,12 +48,15 @@ def label(text: str, help_text: str = "", is_changed: bool = False) -> None:
     imgui.set_next_item_width(-1)
 
 
-def field(row: object, value: object, name: str) -> tuple[bool, object]:
-    """Shows `value` of a row with type, unit, minimum, maximum and choices; whether it was changed, and to what."""
+def field(row: object, value: object, name: str, absent: Mapping[str, str] = _NONE) -> tuple[bool, object]:
+    """Shows `value` of a row with type, unit, minimum, maximum and choices; whether it was changed, and to what.
+
+    absent  choices that cannot be taken, each with the reason
+    """
     if row.type == "bool":
         return imgui.checkbox(f"##{name}", bool(value))
     if row.type == "choice":
-        return choice(name, row.choices, value)
+        return choice(name, row.choices, value, absent)
     if row.type == "int":
         speed, form = max(0.05, 0.01 * abs(value)), _meaning(row, value) or "%d"
         return imgui.drag_int(f"##{name}", int(value), speed, *_bounds(row, int), form)
@@ -65,10 +72,24 @@ def field(row: object, value: object, name: str) -> tuple[bool, object]:
     return changed, _plain(number)
 
 
-def choice(name: str, choices: tuple[str, ...], value: str) -> tuple[bool, str]:
-    """One word of several."""
-    changed, index = imgui.combo(f"##{name}", choices.index(value), list(choices))
-    return changed, choices[index]
+def choice(name: str, choices: tuple[str, ...], value: str, absent: Mapping[str, str] = _NONE) -> tuple[bool, str]:
+    """One word of several; the absent ones are shown with the reason and cannot be taken."""
+    chosen = value
+    if imgui.begin_combo(f"##{name}", value):
+        for word in choices:
+            if word in absent:
+                _absent_choice(word, absent[word])
+            elif imgui.selectable(word, word == value)[0]:
+                chosen = word
+        imgui.end_combo()
+    return chosen != value, chosen
+
+
+def _absent_choice(word: str, reason: str) -> None:
+    imgui.begin_disabled()
+    imgui.selectable(word, False)
+    imgui.text_unformatted(textwrap.fill(reason, _REASON_WIDTH))
+    imgui.end_disabled()
 
 
 def _speed(value: float) -> float:

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from fontana import _core
+from fontana.backends import absent_backends
 from fontana.cli.exit_codes import sentence
 from fontana.formats import particle_radius
 from fontana.gl.frame_data import FrameData
@@ -35,8 +36,9 @@ class Failure:
 class LiveSource:
     """Simulates `scene`. Methods are the window's thread's; none of them waits for a frame.
 
-    settings   the parameters and colliders; change them through `set` and `set_collider`
-    rates      frames a second by scheme
+    settings         the parameters and colliders; change them through `set` and `set_collider`
+    rates            frames a second by scheme
+    absent_backends  those that cannot be switched to, each with the reason
     """
 
     is_live = True
@@ -45,6 +47,7 @@ class LiveSource:
         self.scene = scene
         self.settings = Settings(scene)
         self.rates = SchemeRates()
+        self.absent_backends = absent_backends()
         self.frames_per_second = float("inf")  # at most
         self._condition = threading.Condition()
         self._orders = Orders(is_playing=is_playing)
@@ -251,5 +254,5 @@ class LiveSource:
         """Seconds of this frame by launch, where solver.profile is on."""
         if not self._simulation.get("solver.profile"):
             return {}
-        before, self._profile = self._profile, {name: seconds for name, _, seconds in self._simulation.profile()}
+        before, self._profile = self._profile, {row.name: row.seconds for row in self._simulation.profile()}
         return {name: max(0.0, seconds - before.get(name, 0.0)) for name, seconds in self._profile.items()}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -134,6 +135,10 @@ class ViewerModel:
         self._try(lambda: self.source.set_collider(index, field, value))
         self.stage_version += 1
 
+    def absent_choices(self, path: str) -> Mapping[str, str]:
+        """Words of a parameter that this machine cannot do, each with the reason."""
+        return self.source.absent_backends if self.source.is_live and path == "solver.backend" else {}
+
     def next_backend(self) -> None:
         self._next_choice("solver.backend")
 
@@ -144,8 +149,9 @@ class ViewerModel:
         if not self.source.is_live:
             self.messages.say("a cache is played, not computed: there is nothing to switch")
             return
-        choices = parameters()[path].choices
-        choice = choices[(choices.index(self.source.settings.get(path)) + 1) % len(choices)]
+        choices, absent = parameters()[path].choices, self.absent_choices(path)
+        now = choices.index(self.source.settings.get(path))
+        choice = next(word for word in choices[now + 1 :] + choices[: now + 1] if word not in absent)
         self.set(path, choice)
         self.messages.say(f"{parameters()[path].label}: {choice}")
 

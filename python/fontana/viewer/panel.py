@@ -194,7 +194,7 @@ def _collider_row(model: ViewerModel, index: int, collider: dict, row: object) -
 def _field(model: ViewerModel, row: object, value: object, name: str, is_fixed: bool = False) -> tuple[bool, object]:
     """The field of a row; what a cache was simulated with is only shown."""
     imgui.begin_disabled(is_fixed or not model.source.is_live)
-    result = fields.field(row, value, name)
+    result = fields.field(row, value, name, model.absent_choices(row.name))
     imgui.end_disabled()
     return result
 

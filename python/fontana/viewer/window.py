@@ -8,6 +8,7 @@ import time
 import numpy as np
 from imgui_bundle import ImVec2, imgui
 
+from fontana.runs.stop import StopSignals
 from fontana.viewer import bars, hands, look, overlay, panel
 from fontana.viewer.capture import Capture
 from fontana.viewer.glfw_window import GlfwWindow
@@ -35,9 +36,12 @@ class ViewerWindow:
         imgui.backends.glfw_init_for_opengl(ctypes.cast(window.handle, ctypes.c_void_p).value, True)
         imgui.backends.opengl3_init("#version 330")
 
-    def run(self) -> None:
-        while self.model.is_open:
-            self.turn()
+    def run(self) -> int | None:
+        """Until the user closes it, or Ctrl-C or SIGTERM comes: the number of that signal."""
+        with StopSignals("closing the window") as stop:
+            while self.model.is_open and not stop.requested:
+                self.turn()
+        return stop.requested
 
     def turn(self) -> None:
         """Takes in events until it is time, and draws once."""
