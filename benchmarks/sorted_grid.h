@@ -37,7 +37,8 @@ class SortedGrid {
     void build() {
         const auto count = static_cast<uint>(position_.size());
         for (uint i = 0; i < count; ++i) assign_cells(i, constants_, position_.data(), key_.data());
-        sorter_.sort(pool_, key_.data(), count, cell_start_.size() - 1, order_.data(), cell_start_.data());
+        sorter_.sort(pool_, key_.data(), count, cell_start_.size() - 1, order_.data(), cell_start_.data(),
+                     reinterpret_cast<RadixSort::Item*>(sorted_position_.data()));
         for (uint i = 0; i < count; ++i)
             gather_state(i, count, order_.data(), position_.data(), velocity_.data(), id_.data(),
                          sorted_position_.data(), sorted_velocity_.data(), sorted_id_.data());
@@ -49,10 +50,8 @@ class SortedGrid {
                       density_.data(), packed_position_.data(), packed_velocity_.data(), pressure_.data());
     }
 
-    // Where cells start, key and order, the two lists of the sort, and the second copy of what is reordered.
-    std::size_t grid_bytes() const {
-        return cell_start_.size() * 4 + position_.size() * (4 + 4 + 2 * 8 + (16 + 16 + 4));
-    }
+    // Where cells start, key and order, and the second copy of what is reordered, in which the sort has its two lists.
+    std::size_t grid_bytes() const { return cell_start_.size() * 4 + position_.size() * (4 + 4 + (16 + 16 + 4)); }
     // Position and velocity as they are and packed, acceleration, density, pressure, id.
     std::size_t particle_bytes() const { return position_.size() * (5 * 16 + 3 * 4); }
 

@@ -56,7 +56,7 @@ def digest_after_two_frames(simulation, early_position, late_position):
         simulation.set_force(np.full((simulation.particle_count, 3), 1e-4, np.float32))
         simulation.step_frame()
         digest = hashlib.sha256(simulation.count_neighbors())
-        for name in ("position", "velocity", "acceleration", "density", "pressure"):
+        for name in ("position", "velocity", "acceleration", "density", "pressure", "mass"):
             digest.update(simulation.read(name))
         simulation.measure_copy(256)
         return {"digest": digest.hexdigest(), "launches": sorted(row.name for row in simulation.profile())}
