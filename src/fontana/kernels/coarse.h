@@ -19,7 +19,7 @@
 #define COARSE_ROW 14u  // entries that are kept: the matrix is symmetric, so those from the centre on will do
 #define COARSE_SMOOTHING 0.6f
 #define COARSE_STRETCH 1.5f  // piecewise constants are too stiff; over-correction makes up for it (Braess 1995)
-#define COARSE_BOTTOM_SWEEPS 20u
+#define COARSE_BOTTOM_SWEEPS 8u
 
 // A level's box of cells, which wraps around as that of the grid does.
 typedef struct CoarseLevel {
@@ -255,6 +255,18 @@ KERNEL void coarse_restrict(THREAD_ARG const StepConstants c, const CoarseLevel 
     store_right_side(index, sum, matrix, b, guess);
 }
 
+// The matrix times v, at one cell.
+FN float coarse_row_product(const CoarseLevel level, GLOBAL const float* RESTRICT matrix, CellCoordinates cell,
+                            uint index, GLOBAL const float* v) {
+    float sum = matrix[index * COARSE_ROW] * v[index];
+    for (uint k = 1u; k < COARSE_ROW; ++k) {
+        const uint ahead = coarse_neighbor(level, cell, COARSE_CENTRE + k),
+                   behind = coarse_neighbor(level, cell, COARSE_CENTRE - k);
+        sum += matrix[index * COARSE_ROW + k] * v[ahead] + matrix[behind * COARSE_ROW + k] * v[behind];
+    }
+    return sum;
+}
+
 // Down: what is left of b after the first step, summed into the next level's. One thread a cell of the next level.
 KERNEL void coarse_down(THREAD_ARG const CoarseLevel child, const CoarseLevel level,
                         GLOBAL const float* RESTRICT child_matrix, GLOBAL const float* RESTRICT child_b,
@@ -270,9 +282,7 @@ KERNEL void coarse_down(THREAD_ARG const CoarseLevel child, const CoarseLevel le
         const uint from = coarse_index(child, cell.x, cell.y, cell.z);
         if (coarse_diagonal(child_matrix, from) == 0.0f) continue;
         sum += child_b[from];
-        for (uint slot = 0u; slot < COARSE_STENCIL; ++slot)
-            sum -=
-                coarse_entry(child, child_matrix, cell, from, slot) * child_guess[coarse_neighbor(child, cell, slot)];
+        sum -= coarse_row_product(child, child_matrix, cell, from, child_guess);
     }
     store_right_side(index, sum, matrix, b, guess);
 }
@@ -288,15 +298,21 @@ KERNEL void coarse_bottom(THREAD_ARG const CoarseLevel level, GLOBAL const float
             const uint index = sweep % 2u == 0u ? k : count - 1u - k;
             const CellCoordinates cell = coarse_cell(level, index);
             const float diagonal = coarse_diagonal(matrix, index);
-            float left = b[index];
-            for (uint slot = 0u; slot < COARSE_STENCIL; ++slot)
-                if (slot != COARSE_CENTRE)
-                    left -= coarse_entry(level, matrix, cell, index, slot) * z[coarse_neighbor(level, cell, slot)];
+            const float left = b[index] - coarse_row_product(level, matrix, cell, index, z) + diagonal * z[index];
             z[index] = diagonal > 0.0f ? left / diagonal : 0.0f;
         }
 }
 
-// Up: the first step with the next level's correction, smoothed once more.
+// The first step and the next level's correction, at one cell.
+FN float coarse_value(const CoarseLevel level, const CoarseLevel parent, GLOBAL const float* RESTRICT guess,
+                      GLOBAL const float* RESTRICT parent_z, uint index) {
+    const CellCoordinates cell = coarse_cell(level, index);
+    const Merging merging = merging_of(level, parent);
+    const uint above = coarse_index(parent, cell.x >> merging.x, cell.y >> merging.y, cell.z >> merging.z);
+    return guess[index] + COARSE_STRETCH * parent_z[above];
+}
+
+// Up: that, smoothed once more.
 KERNEL void coarse_up(THREAD_ARG const CoarseLevel level, const CoarseLevel parent, GLOBAL const float* RESTRICT matrix,
                       GLOBAL const float* RESTRICT b, GLOBAL const float* RESTRICT guess,
                       GLOBAL const float* RESTRICT parent_z, GLOBAL float* RESTRICT z) {
@@ -306,15 +322,13 @@ KERNEL void coarse_up(THREAD_ARG const CoarseLevel level, const CoarseLevel pare
     z[index] = 0.0f;
     if (diagonal <= 0.0f) return;
     const CellCoordinates cell = coarse_cell(level, index);
-    const Merging merging = merging_of(level, parent);
-    float left = b[index], own = 0.0f;
-    for (uint slot = 0u; slot < COARSE_STENCIL; ++slot) {
-        const uint from = coarse_neighbor(level, cell, slot);
-        const CellCoordinates there = coarse_cell(level, from);
-        const uint above = coarse_index(parent, there.x >> merging.x, there.y >> merging.y, there.z >> merging.z);
-        const float value = guess[from] + COARSE_STRETCH * parent_z[above];
-        left -= coarse_entry(level, matrix, cell, index, slot) * value;
-        if (slot == COARSE_CENTRE) own = value;
+    const float own = coarse_value(level, parent, guess, parent_z, index);
+    float left = b[index] - diagonal * own;
+    for (uint k = 1u; k < COARSE_ROW; ++k) {
+        const uint ahead = coarse_neighbor(level, cell, COARSE_CENTRE + k),
+                   behind = coarse_neighbor(level, cell, COARSE_CENTRE - k);
+        left -= matrix[index * COARSE_ROW + k] * coarse_value(level, parent, guess, parent_z, ahead) +
+                matrix[behind * COARSE_ROW + k] * coarse_value(level, parent, guess, parent_z, behind);
     }
     z[index] = own + COARSE_SMOOTHING * left / diagonal;
 }

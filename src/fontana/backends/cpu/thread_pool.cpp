@@ -22,9 +22,9 @@ bool look_for(const Condition& condition) {
 
 }  // namespace
 
-ThreadPool::ThreadPool(int thread_count) {
+ThreadPool::ThreadPool(int thread_count) : shares_(static_cast<std::size_t>(std::max(1, thread_count))) {
     try {
-        for (int k = 1; k < thread_count; ++k) workers_.emplace_back([this] { work(); });
+        for (std::size_t k = 1; k < shares_.size(); ++k) workers_.emplace_back([this, k] { work(k); });
     } catch (...) {
         stop();  // a running thread must not be destroyed
         throw;
@@ -51,15 +51,14 @@ void ThreadPool::run(std::size_t count, std::size_t grain, const std::function<v
     {
         std::lock_guard<std::mutex> lock(mutex_);
         body_ = &body;
-        count_ = count;
         grain_ = grain;
-        next_ = 0;
+        share_out(count);
         error_ = nullptr;
         busy_ = workers_.size();
         ++generation_;
     }
     start_.notify_all();
-    take_pieces();
+    take_pieces(0);
     const auto is_done = [this] { return busy_ == 0; };
     look_for(is_done);
     std::unique_lock<std::mutex> lock(mutex_);
@@ -68,37 +67,48 @@ void ThreadPool::run(std::size_t count, std::size_t grain, const std::function<v
     if (error_) std::rethrow_exception(error_);
 }
 
-// Shorter towards the end, so that all threads come to it together.
-std::size_t ThreadPool::piece_after(std::size_t begin) const {
-    const std::size_t left = count_ - begin, least = std::max<std::size_t>(1, grain_ / 8);
-    const std::size_t fair = left / (2 * (workers_.size() + 1)) / least * least;
-    return std::min(left, std::clamp(fair, least, grain_));
-}
-
-void ThreadPool::take_pieces() {
-    try {
-        for (;;) {
-            std::size_t begin = next_, end;
-            do {
-                if (begin >= count_) return;
-                end = begin + piece_after(begin);
-            } while (!next_.compare_exchange_weak(begin, end));
-            (*body_)(begin, end);
-        }
-    } catch (...) {
-        std::lock_guard<std::mutex> lock(mutex_);
-        if (!error_) error_ = std::current_exception();
-        next_ = count_;
+void ThreadPool::share_out(std::size_t count) {
+    const std::size_t unit = std::max<std::size_t>(1, grain_ / 8), units = (count + unit - 1) / unit;
+    for (std::size_t k = 0; k < shares_.size(); ++k) {
+        shares_[k].next = units * k / shares_.size() * unit;
+        shares_[k].end = std::min(count, units * (k + 1) / shares_.size() * unit);
     }
 }
 
-void ThreadPool::work() {
+// Shorter towards the end of a share, so that all threads come to it together.
+std::size_t ThreadPool::piece_of(std::size_t left) const {
+    const std::size_t least = std::max<std::size_t>(1, grain_ / 8);
+    return std::min(left, std::clamp(left / 4 / least * least, least, grain_));
+}
+
+void ThreadPool::take_pieces(std::size_t thread) {
+    try {
+        for (std::size_t k = 0; k < shares_.size(); ++k) take_pieces_of(shares_[(thread + k) % shares_.size()]);
+    } catch (...) {
+        std::lock_guard<std::mutex> lock(mutex_);
+        if (!error_) error_ = std::current_exception();
+        for (Share& share : shares_) share.next = share.end;
+    }
+}
+
+void ThreadPool::take_pieces_of(Share& share) {
+    for (;;) {
+        std::size_t begin = share.next, end;
+        do {
+            if (begin >= share.end) return;
+            end = begin + piece_of(share.end - begin);
+        } while (!share.next.compare_exchange_weak(begin, end));
+        (*body_)(begin, end);
+    }
+}
+
+void ThreadPool::work(std::size_t thread) {
     std::size_t seen = 0;
     for (;;) {
         wait_for_work(seen);
         if (stopping_) return;
         seen = generation_;
-        take_pieces();
+        take_pieces(thread);
         if (--busy_ == 0) {
             std::lock_guard<std::mutex> lock(mutex_);  // whoever waits has either seen it or is asleep by now
             done_.notify_one();

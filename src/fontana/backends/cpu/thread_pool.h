@@ -28,22 +28,31 @@ class ThreadPool {
 
     // Calls body(begin, end) for pieces of [0, count) of at most `grain`, on all threads, in any order; every piece
     // begins at a multiple of an eighth of the grain. Returns when all is done; the first exception of a body is thrown
-    // here.
+    // here. A thread begins with the same share of [0, count) in every loop, which its cache may still hold, and helps
+    // with what is left of the others' when it is through.
     void run(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 
  private:
-    void work();
+    // On a cache line of its own, since threads write to it.
+    struct alignas(64) Share {
+        std::atomic<std::size_t> next{0};
+        std::size_t end = 0;
+    };
+
+    void work(std::size_t thread);
     void stop();
-    void take_pieces();
-    std::size_t piece_after(std::size_t begin) const;
+    void share_out(std::size_t count);
+    void take_pieces(std::size_t thread);
+    void take_pieces_of(Share& share);
+    std::size_t piece_of(std::size_t left) const;
     void wait_for_work(std::size_t seen);
 
+    std::vector<Share> shares_;  // by thread; the caller's is the first
     std::vector<std::thread> workers_;
     std::mutex mutex_;
     std::condition_variable start_, done_;
     const std::function<void(std::size_t, std::size_t)>* body_ = nullptr;
-    std::size_t count_ = 0, grain_ = 1;
-    std::atomic<std::size_t> next_{0};
+    std::size_t grain_ = 1;
     std::atomic<std::size_t> generation_{0}, busy_{0};
     std::exception_ptr error_;
     std::atomic<bool> stopping_{false};
