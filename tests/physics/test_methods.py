@@ -140,8 +140,10 @@ def test_a_pool_stays_at_rest_and_knows_its_depth(backend, make_simulation):
     assert position[:, 1].max() == pytest.approx(0.475, abs=0.5 * SPACING)
     assert report.centre_of_mass[1] == pytest.approx(0.25, rel=0.02)
     expected = 1000.0 * 9.81 * (0.5 - position[:, 1])
-    inner = np.all(np.abs(position[:, [0, 2]] - 0.25) < 0.15, axis=1) & (position[:, 1] < 0.4)
-    assert pressure[inner].mean() == pytest.approx(expected[inner].mean(), rel=0.05)
+    # Layers at a wall carry more than the water there (docs/methods.md), so they are left out.
+    height = position[:, 1]
+    inner = np.all(np.abs(position[:, [0, 2]] - 0.25) < 0.15, axis=1) & (height > 2 * SPACING) & (height < 0.4)
+    assert pressure[inner].mean() == pytest.approx(expected[inner].mean(), rel=0.04)
 
 
 def test_a_solve_that_gives_up_says_so(make_simulation):
