@@ -9,6 +9,7 @@
 #include <system_error>
 #include <thread>
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include "backends/cpu/cpu_kernels.h"
@@ -25,23 +26,36 @@ constexpr std::size_t k_grain = 512;
 static_assert(k_grain / 8 % k_list_group == 0, "a thread takes whole lists");
 constexpr int k_most_arguments = 16;
 
+// Neighbours lie rows apart in several arrays at once: with pages of 4 KiB a processor would spend its time looking
+// addresses up. Where the system has larger ones it may use them for a large array.
+constexpr std::size_t k_large_page = std::size_t{2} << 20, k_large_array = 2 * k_large_page;
+
+std::align_val_t alignment_of(std::size_t bytes) {
+    return std::align_val_t{bytes >= k_large_array ? k_large_page : std::size_t{64}};
+}
+
+char* allocate_pages(std::size_t bytes) {
+    void* data = ::operator new(bytes, alignment_of(bytes));
+#ifdef MADV_HUGEPAGE
+    if (bytes >= k_large_array) madvise(data, bytes, MADV_HUGEPAGE);  // advice: without it all works as well
+#endif
+    return static_cast<char*>(data);
+}
+
 class CpuBuffer : public Buffer {
  public:
     CpuBuffer(const std::string& name, std::size_t bytes)
-        : Buffer(name, bytes),
-          data_(static_cast<char*>(::operator new(bytes + k_slack, k_alignment))),
-          is_owner_(true) {
+        : Buffer(name, bytes), data_(allocate_pages(bytes + k_slack)), is_owner_(true) {
         std::fill_n(data_, bytes + k_slack, '\0');
     }
     CpuBuffer(const std::string& name, std::size_t bytes, char* data)
         : Buffer(name, bytes), data_(data), is_owner_(false) {}
     ~CpuBuffer() override {
-        if (is_owner_) ::operator delete(data_, k_alignment);
+        if (is_owner_) ::operator delete(data_, alignment_of(bytes() + k_slack));
     }
     char* data() const { return data_; }
 
  private:
-    static constexpr std::align_val_t k_alignment{64};
     // A loop over vectors of sixteen particles reads, but does not use, up to fifteen beyond the last.
     static constexpr std::size_t k_slack = 16 * sizeof(float4);
     char* data_;

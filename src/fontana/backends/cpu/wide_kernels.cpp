@@ -336,26 +336,39 @@ void reduce_step(uint begin, uint end, const StepConstants& c, const uint& lane_
     }
 }
 
-// Neighbouring lanes of the sums at once, each in the order of the plain loop.
+// Neighbouring lanes at once, each in the order of the plain loop, so that memory is read in rows.
 void anderson_sums(uint begin, uint end, const uint& count, const uint& lane_count, const float4* factor,
                    const float* residual, const float* u, const float* step, const float* step_1, const float* step_2,
                    float* sums) {
+    constexpr uint k_vectors = 16;
     uint lane = begin;
-    for (; lane + width <= end && lane + width <= lane_count; lane += width) {
-        SolveSums s = zero_sums();
-        for (uint i = lane; i < count; i += lane_count) {
-            const uint beyond = i + width > count ? i + width - count : 0;  // of the last row
-            const uint within = ((1u << width) - 1u) >> beyond;
-            s = add_to_sums(s, load(factor + i).w, keep(within, load(residual + i)), load(u + i),
-                            keep(within, load(step + i)), keep(within, load(step_1 + i)),
-                            keep(within, load(step_2 + i)));
+    for (; lane + width <= end && lane + width <= lane_count; lane += k_vectors * width) {
+        const uint fitting = (end < lane_count ? end : lane_count) - lane;
+        const uint vectors = fitting / width < k_vectors ? fitting / width : k_vectors;
+        SolveSums s[k_vectors];
+        for (SolveSums& zero : s) zero = zero_sums();
+        for (uint row = lane; row < count; row += lane_count)
+            for (uint k = 0; k < vectors && row + k * width < count; ++k) {
+                const uint i = row + k * width;
+                const uint beyond = i + width > count ? i + width - count : 0;  // of the last row
+                const uint within = ((1u << width) - 1u) >> beyond;
+                s[k] = add_to_sums(s[k], load(factor + i).w, keep(within, load(residual + i)), load(u + i),
+                                   keep(within, load(step + i)), keep(within, load(step_1 + i)),
+                                   keep(within, load(step_2 + i)));
+            }
+        for (uint k = 0; k < vectors; ++k) {
+            const uint first = lane + k * width;
+            store(sums + first, s[k].residual);
+            store(sums + lane_count + first, s[k].m00);
+            store(sums + 2 * lane_count + first, s[k].m01);
+            store(sums + 3 * lane_count + first, s[k].m11);
+            store(sums + 4 * lane_count + first, s[k].y0);
+            store(sums + 5 * lane_count + first, s[k].y1);
         }
-        store(sums + lane, s.residual);
-        store(sums + lane_count + lane, s.m00);
-        store(sums + 2 * lane_count + lane, s.m01);
-        store(sums + 3 * lane_count + lane, s.m11);
-        store(sums + 4 * lane_count + lane, s.y0);
-        store(sums + 5 * lane_count + lane, s.y1);
+        if (vectors < k_vectors) {
+            lane += vectors * width;
+            break;
+        }
     }
     for (; lane < end; ++lane)
         ::anderson_sums(lane, count, lane_count, factor, residual, u, step, step_1, step_2, sums);
