@@ -2,9 +2,11 @@
 
     python benchmarks/large.py --out benchmarks/results
 
-A block of water on a floor, two frames of ten substeps each at every count, each count in a process of its own: its
-peak of resident memory beyond what it had before the first step, over the count, is the memory of a particle. dfsph
-takes a fixed number of iterations, so that a substep is the same work at every count. Writes large.json and large.png.
+A block of water on a floor, a frame of ten substeps to warm up and one that is timed at every count, each in a process
+of its own: its peak of resident memory beyond what it had before the first step, over the count, is the memory of a
+particle. All counts in turn, and that several times, so that a slow minute of the machine is not taken for a large
+count. dfsph takes a fixed number of iterations: a substep is the same work at every count. Writes large.json and
+large.png.
 """
 
 from __future__ import annotations
@@ -33,7 +35,7 @@ STYLES = {"cpu": "o-", "opencl": "s--"}
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=RESULTS, help="Folder of the results.")
 @click.option("--counts", default="10000,30000,100000,300000,1000000,2000000,4000000", callback=bench.count_list)
 @click.option("--opencl-most", default=1_000_000, show_default=True, help="The largest count for OpenCL.")
-@click.option("--repeats", default=3, show_default=True, type=click.IntRange(1), help="Frames that are timed.")
+@click.option("--repeats", default=3, show_default=True, type=click.IntRange(1), help="Rounds over all counts.")
 @click.option("--threads", default=0, type=click.IntRange(0), help="Threads of the cpu backend; 0: all cores.")
 def command(out: Path, counts: list[int], opencl_most: int, repeats: int, threads: int) -> None:
     results = {
@@ -41,12 +43,17 @@ def command(out: Path, counts: list[int], opencl_most: int, repeats: int, thread
         **bench.describe_conditions([Path(sys.executable).name, "benchmarks/large.py", *sys.argv[1:]]),
         "settings": {"substeps": SUBSTEPS, "dfsph_iterations": ITERATIONS, "threads": threads, "repeats": repeats},
         "missing": bench.missing_backends(),
-        "rows": [],
     }
-    for backend in (name for name in BACKENDS if name not in results["missing"]):
-        for count in (n for n in counts if backend == "cpu" or n <= opencl_most):
-            for method in METHODS:
-                results["rows"].append(measure_alone(method, backend, count, repeats, threads))
+    asked = [
+        (method, backend, count)
+        for backend in BACKENDS
+        if backend not in results["missing"]
+        for count in counts
+        if backend == "cpu" or count <= opencl_most
+        for method in METHODS
+    ]
+    rounds = [[measure_alone(*row, threads) for row in asked] for _ in range(repeats)]
+    results["rows"] = [merged(samples) for samples in zip(*rounds, strict=True)]
     results["bounds"] = {f"{m}, {b}": bound(select(results, m, b)) for m in METHODS for b in BACKENDS}
     bench.note_end(results)
     bench.publish_json(out / "large.json", results)
@@ -55,37 +62,47 @@ def command(out: Path, counts: list[int], opencl_most: int, repeats: int, thread
     click.echo(f"written: {out / 'large.json'}, {out / 'large.png'}")
 
 
-def measure_alone(method: str, backend: str, count: int, repeats: int, threads: int) -> dict:
-    """One row, from a fresh process; a row that says why where the memory did not suffice."""
+def measure_alone(method: str, backend: str, count: int, threads: int) -> dict:
+    """One sample, from a fresh process; one that says why where the memory did not suffice."""
     with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
         try:
-            row = pool.submit(measure, method, backend, count, repeats, threads).result()
+            sample = pool.submit(measure, method, backend, count, threads).result()
         except (FontanaError, BrokenProcessPool) as error:
             return {"method": method, "backend": backend, "asked": count, "failed": str(error)}
-    median = row["nanoseconds_per_particle_substep"]["median"]
-    remark = f"{median:.0f} ns a particle-substep, {row['bytes_per_particle']:.0f} bytes a particle"
-    click.echo(f"{method}, {backend}, {row['particles']:,} particles: {remark}", err=True)
-    return row
+    ns, room = sample["nanoseconds_per_particle_substep"], sample["bytes_per_particle"]
+    remark = f"{ns:.0f} ns a particle-substep, {room:.0f} bytes a particle"
+    click.echo(f"{method}, {backend}, {sample['particles']:,} particles: {remark}", err=True)
+    return sample
 
 
-def measure(method: str, backend: str, count: int, repeats: int, threads: int) -> dict:
-    """One row, in this process. Raises the library's errors."""
+def merged(samples: tuple[dict, ...]) -> dict:
+    """A row of the results: statistics of the times, the most of the memory; or the first sample that failed."""
+    for sample in samples:
+        if "failed" in sample:
+            return sample
+    times = [sample["nanoseconds_per_particle_substep"] for sample in samples]
+    return samples[0] | {
+        "nanoseconds_per_particle_substep": bench.statistics(times),
+        "bytes_per_particle": max(sample["bytes_per_particle"] for sample in samples),
+    }
+
+
+def measure(method: str, backend: str, count: int, threads: int) -> dict:
+    """One sample, in this process. Raises the library's errors."""
     simulation = build(method, backend, count, threads)
     simulation.device()
     before = resident_bytes("VmRSS")
     simulation.step_frame()
-    particles, seconds, iterations = simulation.particle_count, [], 0
-    for _ in range(repeats):
-        begin = time.perf_counter()
-        iterations += simulation.step_frame().iterations
-        seconds.append(1e9 * (time.perf_counter() - begin) / (SUBSTEPS * particles))
+    particles, begin = simulation.particle_count, time.perf_counter()
+    iterations = simulation.step_frame().iterations
+    seconds = time.perf_counter() - begin
     return {
         "method": method,
         "backend": backend,
         "asked": count,
         "particles": particles,
-        "nanoseconds_per_particle_substep": bench.statistics(seconds),
-        "iterations_per_substep": iterations / (repeats * SUBSTEPS),
+        "nanoseconds_per_particle_substep": 1e9 * seconds / (SUBSTEPS * particles),
+        "iterations_per_substep": iterations / SUBSTEPS,
         "bytes_per_particle": bench.significant((resident_bytes("VmHWM") - before) / particles),
         "estimated_bytes_per_particle": bench.significant(simulation.estimate_memory(particles) / particles),
     }
