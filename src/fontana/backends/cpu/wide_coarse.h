@@ -28,7 +28,7 @@ Vec8 coarse_column(const CoarseNeighbors& neighbors, const Real3* pull) {
 }
 
 inline void add_coarse_neighbors(const StepConstants& c, const CoarseNeighbors& neighbors, const float4& x_i,
-                          CoarseColumns& a) {
+                                 CoarseColumns& a) {
     Real3 pull[CoarseNeighbors::k_room];
     for (uint k = 0; k < neighbors.count; ++k)
         pull[k] = coarse_pull(c, neighbors.weight[k], quick_pair_of(x_i, neighbors.x[k]));
@@ -39,7 +39,7 @@ inline void add_coarse_neighbors(const StepConstants& c, const CoarseNeighbors& 
 
 // For the members of a group from the one numbered `from` on, which are in one cell.
 inline void coarse_columns(const StepConstants& c, const Members& members, uint from, const float4* position,
-                    const float* weight, const uint* neighbor_count, const uint* list, CoarseColumns* a) {
+                           const float* weight, const uint* neighbor_count, const uint* list, CoarseColumns* a) {
     CoarseNeighbors neighbors;
     const auto add_all = [&] {
         for (uint s = from; s < members.count; ++s) add_coarse_neighbors(c, neighbors, members.x[s], a[s]);
@@ -58,8 +58,8 @@ inline void coarse_columns(const StepConstants& c, const Members& members, uint 
 }
 
 inline void coarse_products(uint begin, uint end, const StepConstants& c, const uint&, const uint* cell_start,
-                     const float4* position, const float4* factor, const float* weight, const uint* neighbor_count,
-                     const uint* list, float* table) {
+                            const float4* position, const float4* factor, const float* weight,
+                            const uint* neighbor_count, const uint* list, float* table) {
     for (uint cell = begin; cell < end; ++cell) {
         const uint first = cell_start[cell], last = cell_start[cell + 1];
         if (last - first < COARSE_LEAST) continue;
