@@ -91,7 +91,7 @@ FN NeighborhoodSums add_neighbor(NeighborhoodSums sums, const StepConstants c, R
     sums.gradient = add_along(sums.gradient, g, pair);
     sums.squares += g * slope * pair.r_squared;
     sums.flow += g * along_j;
-    const REAL inverse = QUICK_INVERSE_SQRT(pair.r_squared + 0.01f * c.support_radius_squared);
+    const REAL inverse = INVERSE_SQRT(pair.r_squared + 0.01f * c.support_radius_squared);
     sums.shear = add_along(sums.shear, g * (along_i - along_j) * (inverse * inverse), pair);
     return sums;
 }
