@@ -210,7 +210,7 @@ typedef struct fontana_time_step_limits {
 } fontana_time_step_limits;
 FONTANA_API fontana_status fontana_estimate_limits(fontana_simulation*, double speed, double acceleration,
                                                    fontana_time_step_limits* out);
-/* Bytes on the device for so many particles with the present parameters. */
+/* Bytes on the device, which is opened, for so many particles with the present parameters. */
 FONTANA_API fontana_status fontana_estimate_memory(fontana_simulation*, uint64_t particle_count, uint64_t* bytes);
 /* FONTANA_BAD_INPUT with a sentence if the present parameters cannot be integrated stably. */
 FONTANA_API fontana_status fontana_check(fontana_simulation*);

@@ -33,19 +33,21 @@ FN Pair difference_of(float4 x_i, REAL4 x_j) {
     return pair;
 }
 
-FN Pair pair_of(float4 x_i, REAL4 x_j) {
-    Pair pair = difference_of(x_i, x_j);
-    pair.inverse_r = INVERSE_SQRT(pair.r_squared);
-    pair.r = pair.r_squared * pair.inverse_r;
+FN Pair with_length(Pair pair, REAL inverse_r) {
+    pair.inverse_r = inverse_r;
+    pair.r = pair.r_squared * inverse_r;
     return pair;
 }
 
-// With a length as near as is quick, for the operators of the pressure solve: they use the same one everywhere.
+FN Pair pair_of(float4 x_i, REAL4 x_j) {
+    const Pair pair = difference_of(x_i, x_j);
+    return with_length(pair, INVERSE_SQRT(pair.r_squared));
+}
+
+// With a length as near as is quick, for G and its transpose: as both take the same, K stays symmetric.
 FN Pair quick_pair_of(float4 x_i, REAL4 x_j) {
-    Pair pair = difference_of(x_i, x_j);
-    pair.inverse_r = QUICK_INVERSE_SQRT(pair.r_squared);
-    pair.r = pair.r_squared * pair.inverse_r;
-    return pair;
+    const Pair pair = difference_of(x_i, x_j);
+    return with_length(pair, QUICK_INVERSE_SQRT(pair.r_squared));
 }
 
 FN Real3 add_along(Real3 sum, REAL weight, Pair pair) {

@@ -160,8 +160,8 @@ void Emitter::emit(std::uint64_t batch, double time, double spacing, double fram
     std::uint64_t particle = batch * count;
     out.position.reserve(out.position.size() + 3 * count);
     out.velocity.reserve(out.velocity.size() + 3 * count);
-    for_each_point(spacing, [&](const Vector& untouched) {
-        const Vector point = turned(untouched);
+    for_each_point(spacing, [&](const Vector& lattice_point) {
+        const Vector point = turned(lattice_point);
         for (std::size_t k = 0; k < 3; ++k) {
             const double shift = settings_.jitter * spacing * random_shift(index_, particle, k);
             out.position.push_back(static_cast<float>(settings_.centre[k] + point[k] + flown * direction_[k] + shift));

@@ -20,18 +20,21 @@ std::uint64_t NeighborList::entries(std::uint64_t particle_count, std::uint64_t 
     return is_shared() ? capacity : particle_count * capacity;
 }
 
-void NeighborList::reserve(std::size_t roomy) {
-    if (list_ && reserved_ >= roomy) return;
-    const std::uint64_t usual = is_shared() ? std::max<std::uint64_t>(64, roomy * k_usual_share) : k_usual_length;
-    const std::uint64_t capacity = std::max<std::uint64_t>(capacity_, usual), total = entries(roomy, capacity);
+void NeighborList::reserve(std::size_t particle_capacity) {
+    if (list_ && reserved_ >= particle_capacity) return;
+    const std::uint64_t usual =
+        is_shared() ? std::max<std::uint64_t>(64, particle_capacity * k_usual_share) : k_usual_length;
+    const std::uint64_t capacity = std::max<std::uint64_t>(capacity_, usual),
+                        total = entries(particle_capacity, capacity);
     if (total > k_most_entries)
-        fail(FONTANA_OUT_OF_MEMORY, "neighbour lists of " + std::to_string(roomy) + " particles, " +
+        fail(FONTANA_OUT_OF_MEMORY, "neighbour lists of " + std::to_string(particle_capacity) + " particles, " +
                                         std::to_string(total) + " neighbours in all, cannot be indexed");
     list_.reset();  // the old one first, so that the two never stand side by side; there is none if memory runs out
-    count_ = backend_.allocate("neighbour count", (is_shared() ? shared_total(roomy) + 1 : roomy) * 4);
+    count_ = backend_.allocate("neighbour count",
+                               (is_shared() ? shared_total(particle_capacity) + 1 : particle_capacity) * 4);
     list_ = backend_.allocate("neighbour list", total * 4);
     capacity_ = static_cast<std::uint32_t>(capacity);
-    reserved_ = roomy;
+    reserved_ = particle_capacity;
 }
 
 std::size_t NeighborList::shared_total(std::size_t particle_count) const {

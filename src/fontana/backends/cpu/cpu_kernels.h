@@ -27,9 +27,8 @@ const CpuKernel* avx2_kernels();
 KernelLoop avx2_loop(const char* kernel);
 KernelLoop avx512_loop(const char* kernel);
 #endif
-// Particles in a row that share a list of neighbours in the loops over several (wide_lists.h). By measurement: with one
-// to eight a pass takes about as long, since what is saved in reading is spent in arithmetic, and more share less
-// memory.
+// Particles in a row that share a list of neighbours in the loops over several (wide_lists.h). The more they are, the
+// less is read and kept, and the more is computed for nothing.
 constexpr unsigned k_list_group = 4;
 
 // How a kernel's argument of type T is had from what the backend collected.

@@ -25,8 +25,7 @@ inline Vec inverse_sqrt(Vec a) {
     return y * (1.5f - 0.5f * a * y * y);
 }
 
-// Fourteen bits: gradients are wrong by a part in ten thousand, the same wherever they stand, so that K is as symmetric
-// as it was.
+// Fourteen bits: a gradient is wrong by a part in ten thousand (quick_pair_of).
 inline Vec quick_inverse_sqrt(Vec a) { return _mm512_rsqrt14_ps(a); }
 
 inline float sum_of(Vec a) { return _mm512_reduce_add_ps(a); }
