@@ -36,7 +36,7 @@ FIELDS = (
 @click.command(help=__doc__.split("\n\n")[0])
 @click.option("--particles", default=32768, show_default=True, help="A cube: 32768 or 97336.")
 @click.option("--seconds", default=0.3, show_default=True, help="Simulated time.")
-@click.option("--largest-error", default=9.0, show_default=True, help="Percent, ours: of any particle; 0: no aim.")
+@click.option("--largest-error", default=0.0, show_default=True, help="Percent, ours: aimed at for any particle.")
 @click.option("--threads", default=1, show_default=True, help="Of both.")
 @click.option("--repeats", default=1, show_default=True, help="Pairs of runs.")
 @click.option("--peer-python", default=sys.executable, show_default=False, help="A Python that has pysplishsplash.")

@@ -114,6 +114,7 @@ def _results(method: str, backend: str, device: int, neighbors: str, precision: 
         "solver.precision": precision,
         "fluid.particle_spacing": _SPACING,
         "fluid.surface_tension": 0.0728,
+        "solver.quality": "draft",  # has the coarse levels of dfsph from the start
         "time.timestep": _DT,
         "time.substeps": 1,
     }

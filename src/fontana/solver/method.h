@@ -17,6 +17,7 @@ namespace fontana {
 // What a substep did.
 struct SubstepReport {
     TimeStep step{0.0, "frame"};
+    double speed = 0.0;                                        // m/s: of the fastest particle or surface
     double density_error_mean = 0.0, density_error_max = 0.0;  // of max(0, density / rest - 1) as the substep found it
     std::uint32_t iterations = 0;                              // of the pressure solve
     bool converged = true;

@@ -26,6 +26,13 @@ double convergence_rate(const Parameters& p) {
     return p.solver_pressure_solver == "multilevel" ? 0.15 : 0.1;
 }
 
+// s. Where particles crowd, as in a tall tank that settles, the coarse levels do not make up for a step half as long
+// again as Anderson alone bears.
+double convergence_limit(const Parameters& p, double longest, double density_error) {
+    if (p.fluid_method != "dfsph" || p.solver_pressure_solver != "multilevel") return longest;
+    return longest * std::clamp(std::sqrt(quotient(0.01, density_error)), 2.0 / 3.0, 1.0);
+}
+
 // s. The step that keeps the error of the densest particle near its bound. A solve is linear in the step, so that the
 // error a step leaves grows with the step's square. The longest step leaves up to 4 % where water first meets a floor.
 // And as a few steps in a row take a particle in a corner to the bound, they shrink from a sixteenth of it on; not
@@ -69,7 +76,7 @@ TimeStep choose_time_step(const Parameters& p, const StepState& state, double re
         {limits.acoustic, "acoustic"},
         {limits.viscosity, "viscosity"},
         {limits.surface_tension, "surface_tension"},
-        {limits.convergence, "convergence"},
+        {convergence_limit(p, limits.convergence, state.density_error), "convergence"},
         {density_error_limit(p, limits.convergence, state.density_error), "density_error"},
     };
     const auto& smallest = *std::min_element(std::begin(candidates), std::end(candidates));

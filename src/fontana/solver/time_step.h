@@ -17,8 +17,8 @@ struct TimeStep {
 //   acceleration     0.25 sqrt(H / acceleration)                     (Monaghan 1992)
 //   acoustic         0.4 d / c, c^2 the pressure constant
 //   viscosity        0.1 d^2 density / viscosity
-//   convergence      0.1 s/m d for dfsph, 0.05 s/m d for pcisph: longer steps change the neighbourhood more than the
-//                    solve can follow
+//   convergence      0.15 s/m d for dfsph, 0.1 without its coarse levels, 0.05 for pcisph: longer steps change the
+//                    neighbourhood more than the solve can follow
 //   surface_tension  0.4 sqrt(density d^3 / (2 pi sigma))
 // with H the support radius and d = H / 2.
 fontana_time_step_limits time_step_limits(const Parameters& parameters, double speed, double acceleration);
@@ -31,7 +31,8 @@ struct StepState {
 };
 
 // The next substep when `remaining` seconds of the frame are left: the smallest limit, shortened so that the rest of
-// the frame divides evenly. One more limit than above is "density_error", of solver.density_error_max.
+// the frame divides evenly. What particles that crowd change: with coarse levels
+// `convergence` falls to 0.1 s/m d, and "density_error" keeps to solver.density_error_max.
 TimeStep choose_time_step(const Parameters& parameters, const StepState& state, double remaining);
 
 // Throws BAD_INPUT with the limit and a remedy where a fixed step, or the most substeps allowed, cannot integrate the
