@@ -337,7 +337,7 @@ void Simulation::write_bgeo(const std::string& path) {
 std::uint64_t Simulation::memory_for(std::uint64_t particle_count) {
     if (particle_count > Particles::most) fail_too_many(static_cast<double>(particle_count));
     return particle_count * Particles::bytes_per_particle() + Neighborhood::bytes(particle_count) +
-           method_bytes(parameters.fluid_method, particle_count, device().list_group);
+           method_bytes(parameters.fluid_method, particle_count, device());
 }
 
 }  // namespace fontana
