@@ -15,11 +15,14 @@
 namespace fontana {
 namespace {
 
-void require_finite(const float* values, std::size_t count, std::size_t components, const char* what) {
-    for (std::size_t k = 0; k < count * components; ++k)
-        if (!std::isfinite(values[k]))
+float scaled(float value, double scale) { return static_cast<float>(scale * static_cast<double>(value)); }
+
+// Of vectors, once they are scaled.
+void require_finite(const float* values, std::size_t count, double scale, const char* what) {
+    for (std::size_t k = 0; k < 3 * count; ++k)
+        if (!std::isfinite(scaled(values[k], scale)))
             fail(FONTANA_BAD_INPUT,
-                 std::string(what) + " of particle " + std::to_string(k / components) + " is not a finite number");
+                 std::string(what) + " of particle " + std::to_string(k / 3) + " is not a finite number");
 }
 
 [[noreturn]] void fail_too_many(double count) {
@@ -27,13 +30,6 @@ void require_finite(const float* values, std::size_t count, std::size_t componen
     std::snprintf(text, sizeof text, "%.3g", count);
     fail(FONTANA_BAD_INPUT, std::string(text) + " particles are more than the " + std::to_string(Particles::most) +
                                 " that ids and indices can count");
-}
-
-std::vector<float> scaled(const float* values, std::size_t count, double scale) {
-    std::vector<float> result(values, values + count);
-    if (scale != 1.0)
-        for (float& value : result) value = static_cast<float>(scale * static_cast<double>(value));
-    return result;
 }
 
 }  // namespace
@@ -102,14 +98,17 @@ void Simulation::add_particles(std::size_t count, const float* position, const f
             fail(FONTANA_BAD_INPUT, "the mass of particle " + std::to_string(k) + " is " + std::to_string(mass[k]) +
                                         "; expected kilograms above 0");
     const double scale = parameters.time_simulation_scale;
-    const std::vector<float> at_rest(velocity ? 0 : 3 * count, 0.0f);
-    const std::vector<float> own_mass(mass ? 0 : count, static_cast<float>(fontana::particle_mass(parameters)));
-    const std::vector<float> x = scaled(position, 3 * count, scale);
-    const std::vector<float> v = scaled(velocity ? velocity : at_rest.data(), 3 * count, scale);
-    require_finite(x.data(), count, 3, "the position in metres");
-    require_finite(v.data(), count, 3, "the velocity in metres a second");
-    solver().particles().append(count, x.data(), v.data(), mass ? mass : own_mass.data(),
-                                static_cast<float>(parameters.fluid_rest_density));
+    require_finite(position, count, scale, "the position in metres");
+    if (velocity) require_finite(velocity, count, scale, "the velocity in metres a second");
+    const float own_mass = static_cast<float>(fontana::particle_mass(parameters));
+    const auto vector = [scale](const float* v, float w) {
+        return float4{scaled(v[0], scale), scaled(v[1], scale), scaled(v[2], scale), w};
+    };
+    const auto particle = [&](std::size_t k, float4& x, float4& v) {
+        x = vector(position + 3 * k, mass ? mass[k] : own_mass);
+        if (velocity) v = vector(velocity + 3 * k, 0.0f);
+    };
+    solver().particles().append(count, particle, static_cast<float>(parameters.fluid_rest_density));
 }
 
 void Simulation::set_force(std::size_t count, const float* force) {
@@ -117,7 +116,7 @@ void Simulation::set_force(std::size_t count, const float* force) {
         fail(FONTANA_BAD_INPUT,
              "forces for " + std::to_string(count) + " particles, but there are " + std::to_string(particle_count()));
     std::vector<float4> by_id(force ? count : 0);
-    if (force) require_finite(force, count, 3, "the force");
+    if (force) require_finite(force, count, 1.0, "the force");
     for (std::size_t k = 0; k < by_id.size(); ++k) by_id[k] = {force[3 * k], force[3 * k + 1], force[3 * k + 2], 0.0f};
     solver().particles().set_force(by_id);
 }
@@ -337,7 +336,7 @@ void Simulation::write_bgeo(const std::string& path) {
 std::uint64_t Simulation::memory_for(std::uint64_t particle_count) {
     if (particle_count > Particles::most) fail_too_many(static_cast<double>(particle_count));
     return particle_count * Particles::bytes_per_particle() + Neighborhood::bytes(particle_count) +
-           method_bytes(parameters.fluid_method, particle_count, device().list_group);
+           method_bytes(parameters.fluid_method, particle_count, device());
 }
 
 }  // namespace fontana

@@ -189,15 +189,16 @@ def update(kernel: Kernel, opcode: str, operands: list[str]) -> str | None:
 
 
 def regroup(opcode: str, operands: list[str]) -> str | None:
-    """C++ for a register of 64 bits made of two, or taken apart; None for anything else."""
-    if opcode != "mov.b64" or "{" not in "".join(operands):
+    """C++ for a register made of two of half its bits, or taken apart; None for anything else."""
+    if opcode not in ("mov.b32", "mov.b64") or "{" not in "".join(operands):
         return None
+    bits = int(opcode[5:])
     target, source = operands
     if target.startswith("{"):
-        halves = zip(split_operands(target.strip("{}")), ("", " >> 32"), strict=True)
+        halves = zip(split_operands(target.strip("{}")), ("", f" >> {bits // 2}"), strict=True)
         return " ".join(f"put({name[1:]}, {source[1:]}{shift});" for name, shift in halves if name.startswith("%"))
     low, high = (name[1:] for name in split_operands(source.strip("{}")))
-    return f"put({target[1:]}, std::uint64_t{{{high}}} << 32 | {low});"
+    return f"put({target[1:]}, std::uint{bits}_t{{{high}}} << {bits // 2} | {low});"
 
 
 def move(kernel: Kernel, opcode: str, operands: list[str]) -> str | None:
@@ -216,7 +217,10 @@ def move(kernel: Kernel, opcode: str, operands: list[str]) -> str | None:
         if is_load:
             lines.append(f"put({element[1:]}, load<{TYPES[kind]}>(place, {index}));")
         else:
-            lines.append(f"store<{TYPES[kind]}>(place, {index}, {operand(kernel, element, kind)});")
+            # A store takes the low bits of a register that has more.
+            wide = kernel.registers.get(element[1:]) == "std::uint32_t" and kind in ("b16", "u16", "s16")
+            value = operand(kernel, element, "u32" if wide else kind)
+            lines.append(f"store<{TYPES[kind]}>(place, {index}, static_cast<{TYPES[kind]}>({value}));")
     return " ".join(lines)
 
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr float k_spacing = 0.1f, k_support = 2.0f * k_spacing;
 constexpr uint k_bits = 3, k_side = 1u << k_bits;  // the box of cells; it wraps around
-constexpr uint k_capacity = 128;
+constexpr uint k_words = 128;                      // of a particle's list, at the most
 
 CoarseLevel level_of(uint bits_x, uint bits_y, uint bits_z) {
     return {(1u << bits_x) - 1u, (1u << bits_y) - 1u, (1u << bits_z) - 1u, bits_x, bits_x + bits_y};
@@ -34,8 +34,8 @@ StepConstants constants_of(uint particle_count) {
     c.grid_mask_x = c.grid_mask_y = c.grid_mask_z = k_side - 1u;
     c.grid_shift_y = k_bits;
     c.grid_shift_z = 2u * k_bits;
-    c.list_capacity = c.list_particle_stride = k_capacity;
-    c.list_neighbor_stride = 1u;
+    c.list_capacity = particle_count * k_words;
+    c.list_stride = 1u;
     return c;
 }
 
@@ -43,7 +43,8 @@ StepConstants constants_of(uint particle_count) {
 struct Fluid {
     StepConstants c;
     std::vector<float4> position, velocity, factor, viscous, gradient;
-    std::vector<uint> cell_start, neighbor_count, list;
+    std::vector<uint> cell_start, list_start;
+    std::vector<short> list;
     std::vector<float> density, wall_rate, rate, weight;
 
     Fluid() : c(constants_of(0)) {
@@ -69,16 +70,16 @@ struct Fluid {
         factor.resize(n);
         viscous.resize(n);
         gradient.resize(n);
-        neighbor_count.resize(n);
-        list.resize(n * k_capacity);
+        list_start.resize(n + 2);
+        list.resize(c.list_capacity);
         density.resize(n);
         wall_rate.resize(n);
         rate.resize(n);
         weight.resize(n);
         for (uint i = 0; i < n; ++i)
-            build_neighbor_list(i, c, position.data(), cell_start.data(), neighbor_count.data(), list.data());
+            build_neighbor_list(i, c, position.data(), cell_start.data(), list_start.data(), list.data());
         for (uint i = 0; i < n; ++i)
-            sum_neighborhood(i, c, position.data(), velocity.data(), neighbor_count.data(), list.data(), nullptr,
+            sum_neighborhood(i, c, position.data(), velocity.data(), list_start.data(), list.data(), nullptr,
                              density.data(), factor.data(), wall_rate.data(), rate.data(), viscous.data());
         // A few particles take no part, and on one side none does.
         for (uint i = 0; i < n; ++i)
@@ -90,10 +91,10 @@ struct Fluid {
         const std::vector<float> target(u.size(), 0.0f);
         std::vector<float> result(u.size());
         for (uint i = 0; i < c.particle_count; ++i)
-            pressure_gradient(i, c, u.data(), neighbor_count.data(), list.data(), position.data(), factor.data(),
+            pressure_gradient(i, c, u.data(), list_start.data(), list.data(), position.data(), factor.data(),
                               gradient.data());
         for (uint i = 0; i < c.particle_count; ++i)
-            pressure_residual(i, c, gradient.data(), neighbor_count.data(), list.data(), position.data(), factor.data(),
+            pressure_residual(i, c, gradient.data(), list_start.data(), list.data(), position.data(), factor.data(),
                               target.data(), result.data());
         for (float& r : result) r = -r;
         return result;
@@ -159,7 +160,7 @@ void matrices_are_galerkins() {
     const uint cell_count = k_side * k_side * k_side;
     for (uint cell = 0; cell < cell_count; ++cell)
         coarse_products(cell, fluid.c, cell_count, fluid.cell_start.data(), fluid.position.data(), fluid.factor.data(),
-                        fluid.weight.data(), fluid.neighbor_count.data(), fluid.list.data(), table.data());
+                        fluid.weight.data(), fluid.list_start.data(), fluid.list.data(), table.data());
 
     const CoarseLevel fine = level_of(2, 2, 2), coarse = level_of(1, 1, 1);
     std::vector<float> fine_matrix(coarse_count(fine) * COARSE_ROW), next_matrix(coarse_count(coarse) * COARSE_ROW);

@@ -74,12 +74,11 @@ KERNEL void coarse_weights(THREAD_ARG const uint count, GLOBAL const float4* RES
 // The columns of G P at one particle (coarse_pair.h).
 FN CoarseGradient coarse_gradient(const StepConstants c, uint i, GLOBAL const float4* RESTRICT position,
                                   GLOBAL const float4* RESTRICT factor, GLOBAL const float* RESTRICT weight,
-                                  GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list) {
+                                  GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list) {
     const float4 x_i = position[i], home = home_place(c, x_i);
     CoarseGradient a = no_coarse_gradient();
-    const uint count = list_length(c, neighbor_count[i]);
-    for (uint k = 0u; k < count; ++k) {
-        const uint j = neighbor(c, list, i, k);
+    for (Walk walk = first_neighbor(c, i, list_start, list); walk.is_there; walk = next_neighbor(c, walk, list)) {
+        const uint j = walk.j;
         const float4 x_j = position[j];
         const CoarseShares shares = coarse_shares(home, coarse_place(c, x_j));
         a = add_coarse_gradient(a, coarse_pull(c, c.gradient_scale * weight[j], quick_pair_of(x_i, x_j)), shares);
@@ -97,7 +96,7 @@ FN CoarseGradient coarse_gradient(const StepConstants c, uint i, GLOBAL const fl
 KERNEL void coarse_products(THREAD_ARG const StepConstants c, const uint cell_count,
                             GLOBAL const uint* RESTRICT cell_start, GLOBAL const float4* RESTRICT position,
                             GLOBAL const float4* RESTRICT factor, GLOBAL const float* RESTRICT weight,
-                            GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
+                            GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list,
                             GLOBAL float* RESTRICT table) {
     const uint cell = THREAD_INDEX;
     if (cell >= cell_count) return;
@@ -106,7 +105,7 @@ KERNEL void coarse_products(THREAD_ARG const StepConstants c, const uint cell_co
     GLOBAL float* RESTRICT sum = table + begin / COARSE_LEAST * COARSE_TABLE;
     for (uint k = 0u; k < COARSE_TABLE; ++k) sum[k] = 0.0f;
     for (uint i = begin; i < end; ++i) {
-        const CoarseGradient a = coarse_gradient(c, i, position, factor, weight, neighbor_count, list);
+        const CoarseGradient a = coarse_gradient(c, i, position, factor, weight, list_start, list);
         uint k = 0u;
         for (uint p = 0u; p < 8u; ++p)
             for (uint q = p; q < 8u; ++q, ++k)

@@ -78,7 +78,9 @@ typedef unsigned int uint;
 #define SQRT(a) __builtin_sqrtf(a)
 #define INVERSE_SQRT(a) (1.0f / __builtin_sqrtf(a))
 #define FLOOR(a) __builtin_floorf(a)
+#define ATOMIC_ADD(p, value) __atomic_fetch_add((p), (value), __ATOMIC_RELAXED)
 #define MAKE_FLOAT4(x, y, z, w) (float4{(x), (y), (z), (w)})
+#define FONTANA_PACKED_LISTS  // as a processor has them (neighbor_list.h)
 
 #endif
 

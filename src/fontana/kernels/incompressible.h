@@ -40,8 +40,8 @@ FN float4 viscosity_of(const StepConstants c, Real3 shear) {
 // the density; `factor` = S, 1 / D (0 where a particle feels no pressure); `wall_rate`; `rate`, that of the relative
 // density under the present velocities (1/s); and the acceleration by viscosity.
 KERNEL void sum_neighborhood(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
-                             GLOBAL const float4* RESTRICT velocity, GLOBAL const uint* RESTRICT neighbor_count,
-                             GLOBAL const uint* RESTRICT list, GLOBAL const ColliderConstants* RESTRICT collider,
+                             GLOBAL const float4* RESTRICT velocity, GLOBAL const uint* RESTRICT list_start,
+                             GLOBAL const short* RESTRICT list, GLOBAL const ColliderConstants* RESTRICT collider,
                              GLOBAL float* RESTRICT density_out, GLOBAL float4* RESTRICT factor,
                              GLOBAL float* RESTRICT wall_rate, GLOBAL float* RESTRICT rate,
                              GLOBAL float4* RESTRICT viscous) {
@@ -50,9 +50,8 @@ KERNEL void sum_neighborhood(THREAD_ARG const StepConstants c, GLOBAL const floa
     const float4 x_i = position[i], v_i = velocity[i];
     NeighborhoodSums sums = no_neighborhood();
     sums.density = x_i.w * kernel_value(c, 0.0f);
-    const uint count = list_length(c, neighbor_count[i]);
-    for (uint k = 0u; k < count; ++k) {
-        const uint j = neighbor(c, list, i, k);
+    for (Walk walk = first_neighbor(c, i, list_start, list); walk.is_there; walk = next_neighbor(c, walk, list)) {
+        const uint j = walk.j;
         const float4 x_j = position[j];
         sums = add_neighbor(sums, c, x_j.w, pair_of(x_i, x_j), v_i, velocity[j]);
     }
@@ -66,14 +65,13 @@ KERNEL void sum_neighborhood(THREAD_ARG const StepConstants c, GLOBAL const floa
 }
 
 // G^T applied to `field`, without the walls' own motion.
-FN float divergence_at(const StepConstants c, uint i, GLOBAL const uint* RESTRICT neighbor_count,
-                       GLOBAL const uint* RESTRICT list, GLOBAL const float4* RESTRICT position,
+FN float divergence_at(const StepConstants c, uint i, GLOBAL const uint* RESTRICT list_start,
+                       GLOBAL const short* RESTRICT list, GLOBAL const float4* RESTRICT position,
                        GLOBAL const float4* RESTRICT factor, GLOBAL const float4* RESTRICT field) {
     const float4 x_i = position[i];
     float sum = 0.0f;
-    const uint count = list_length(c, neighbor_count[i]);
-    for (uint k = 0u; k < count; ++k) {
-        const uint j = neighbor(c, list, i, k);
+    for (Walk walk = first_neighbor(c, i, list_start, list); walk.is_there; walk = next_neighbor(c, walk, list)) {
+        const uint j = walk.j;
         const float4 x_j = position[j];
         sum += divergence_term(c, x_j.w, quick_pair_of(x_i, x_j), field[j]);
     }
@@ -82,12 +80,12 @@ FN float divergence_at(const StepConstants c, uint i, GLOBAL const uint* RESTRIC
 
 // Rate of the relative density under the velocities, 1/s: what the solves start from.
 KERNEL void density_rate(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT velocity,
-                         GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
+                         GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list,
                          GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT factor,
                          GLOBAL const float* RESTRICT wall_rate, GLOBAL float* RESTRICT rate) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
-    rate[i] = divergence_at(c, i, neighbor_count, list, position, factor, velocity) - wall_rate[i];
+    rate[i] = divergence_at(c, i, list_start, list, position, factor, velocity) - wall_rate[i];
 }
 
 // G u from its sum over neighbours; s: S_i.
@@ -98,16 +96,15 @@ FN float4 gradient_of(const StepConstants c, float u_i, float4 s, Real3 sum) {
 
 // G u, into `gradient`.
 KERNEL void pressure_gradient(THREAD_ARG const StepConstants c, GLOBAL const float* RESTRICT u,
-                              GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
+                              GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list,
                               GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT factor,
                               GLOBAL float4* RESTRICT gradient) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
     const float4 x_i = position[i];
     Real3 sum = zero_vector();
-    const uint count = list_length(c, neighbor_count[i]);
-    for (uint k = 0u; k < count; ++k) {
-        const uint j = neighbor(c, list, i, k);
+    for (Walk walk = first_neighbor(c, i, list_start, list); walk.is_there; walk = next_neighbor(c, walk, list)) {
+        const uint j = walk.j;
         const float4 x_j = position[j];
         sum = add_gradient(sum, c, x_j.w * u[j], quick_pair_of(x_i, x_j));
     }

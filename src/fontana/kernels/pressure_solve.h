@@ -40,12 +40,12 @@ KERNEL void divergence_step(THREAD_ARG const StepConstants c, const float relaxa
 
 // r = target - K u from G u, 1/s^2; 0 where no pressure acts.
 KERNEL void pressure_residual(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT gradient,
-                              GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
+                              GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list,
                               GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT factor,
                               GLOBAL const float* RESTRICT target, GLOBAL float* RESTRICT residual) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
-    const float k_u = divergence_at(c, i, neighbor_count, list, position, factor, gradient);
+    const float k_u = divergence_at(c, i, list_start, list, position, factor, gradient);
     residual[i] = factor[i].w > 0.0f ? target[i] - k_u : 0.0f;
 }
 

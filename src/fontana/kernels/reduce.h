@@ -63,16 +63,6 @@ KERNEL void reduce_diagnostics(THREAD_ARG const StepConstants c, const uint lane
     measure[lane] = d;
 }
 
-// Per lane: the largest of whole numbers (neighbour counts).
-KERNEL void reduce_largest(THREAD_ARG const uint count, const uint lane_count, GLOBAL const uint* RESTRICT value,
-                           GLOBAL uint* RESTRICT largest) {
-    const uint lane = THREAD_INDEX;
-    if (lane >= lane_count) return;
-    uint found = 0u;
-    for (uint i = lane; i < count; i += lane_count) found = value[i] > found ? value[i] : found;
-    largest[lane] = found;
-}
-
 // Per lane: the sum.
 KERNEL void reduce_sum(THREAD_ARG const uint count, const uint lane_count, GLOBAL const float* RESTRICT value,
                        GLOBAL float* RESTRICT out) {

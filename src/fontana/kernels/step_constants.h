@@ -40,9 +40,8 @@ typedef struct StepConstants {
     uint grid_mask_x, grid_mask_y, grid_mask_z;  // cells along an axis, less one; counts are powers of two
     uint grid_shift_y, grid_shift_z;             // where y and z stand in a cell's key
     uint use_wendland;                           // instead of the cubic spline
-    uint list_capacity;                          // neighbours that each list has room for; if shared, all together
-    uint list_particle_stride;  // the k-th neighbour of particle i is at i * particle stride + k * neighbor stride
-    uint list_neighbor_stride;
+    uint list_capacity;                          // words there is room for: packed or shared on all lists, else on each
+    uint list_stride;                            // from one word of a list to its next
 } StepConstants;
 
 // An implicit surface, as the kernels see it: III.7 of the thesis. Units as in fontana_collider.

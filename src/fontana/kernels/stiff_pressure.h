@@ -43,7 +43,7 @@ FN void store_correction(const StepConstants c, uint i, float delta, float densi
 // list of one's own, but not on a shared one. `residual` gets what is above rest density.
 KERNEL void correct_pressure(THREAD_ARG const StepConstants c, const float delta,
                              GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT predicted,
-                             GLOBAL const uint* RESTRICT neighbor_count, GLOBAL const uint* RESTRICT list,
+                             GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list,
                              GLOBAL const ColliderConstants* RESTRICT collider, GLOBAL const float4* RESTRICT factor,
                              GLOBAL float* RESTRICT u, GLOBAL float* RESTRICT residual) {
     const uint i = THREAD_INDEX;
@@ -51,9 +51,8 @@ KERNEL void correct_pressure(THREAD_ARG const StepConstants c, const float delta
     (void)position;
     const float4 x_i = predicted[i];
     float density = x_i.w * kernel_value(c, 0.0f);
-    const uint count = list_length(c, neighbor_count[i]);
-    for (uint k = 0u; k < count; ++k) {
-        const float4 x_j = predicted[neighbor(c, list, i, k)];
+    for (Walk walk = first_neighbor(c, i, list_start, list); walk.is_there; walk = next_neighbor(c, walk, list)) {
+        const float4 x_j = predicted[walk.j];
         density += x_j.w * kernel_value(c, pair_of(x_i, x_j).r);
     }
     store_correction(c, i, delta, density, walls_at(c, collider, x_i).share, factor, u, residual);

@@ -54,7 +54,7 @@ void CoarseCorrection::prepare(Substep& s, Operators& operators, Buffer& u, Buff
                     {count, s.particles.position(), operators.factor(), operators.rate(), u, *weight_});
     backend_.launch(Kernel::coarse_products, cell_count,
                     {s.constants, cell_count, s.neighborhood.cell_start(), s.particles.position(), operators.factor(),
-                     *weight_, operators.list().count(), operators.list().list(), products});
+                     *weight_, operators.list().start(), operators.list().list(), products});
     backend_.launch(Kernel::coarse_matrix, coarse_count(finest()),
                     {s.constants, finest(), s.neighborhood.cell_start(), products, *levels_.front().matrix});
     for (std::size_t k = 1; k < levels_.size(); ++k)

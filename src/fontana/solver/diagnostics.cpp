@@ -62,15 +62,6 @@ StepExtremes measure_step(Backend& backend, Particles& particles, StepConstants 
     return step;
 }
 
-std::uint32_t largest_of(Backend& backend, const Buffer& values, std::size_t count) {
-    const std::uint32_t lane_count = lanes_for(count);
-    const auto largest = backend.allocate("largest", lane_count * 4);
-    backend.launch(Kernel::reduce_largest, lane_count,
-                   {static_cast<std::uint32_t>(count), lane_count, values, *largest});
-    const auto found = lanes<std::uint32_t>(backend, *largest, lane_count);
-    return *std::max_element(found.begin(), found.end());
-}
-
 double mean_of(Backend& backend, const Buffer& values, std::size_t count) {
     const std::uint32_t lane_count = lanes_for(count);
     const auto sums = backend.allocate("sums", lane_count * 4);

@@ -21,7 +21,6 @@ struct StepExtremes {
 StepExtremes measure_step(Backend& backend, Particles& particles, StepConstants constants);
 
 // Of `count` values on the device.
-std::uint32_t largest_of(Backend& backend, const Buffer& values, std::size_t count);
 double mean_of(Backend& backend, const Buffer& values, std::size_t count);
 
 struct Diagnostics {

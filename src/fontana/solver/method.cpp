@@ -77,9 +77,9 @@ std::unique_ptr<Method> make_method(const std::string& name, Backend& backend) {
     fail(FONTANA_BAD_INPUT, "no method '" + name + "'");
 }
 
-std::uint64_t method_bytes(const std::string& name, std::uint64_t particle_count, std::uint32_t list_group) {
+std::uint64_t method_bytes(const std::string& name, std::uint64_t particle_count, const DeviceInfo& device) {
     if (name == "mueller") return 0;
-    const std::uint64_t lists = NeighborList::bytes(particle_count, list_group), u = 4 * particle_count;
+    const std::uint64_t lists = NeighborList::bytes(particle_count, device), u = 4 * particle_count;
     if (name == "wcsph") return lists + u;
     if (name == "pcisph") return lists + u + 16 * particle_count;
     return lists + u + CoarseCorrection::product_bytes(particle_count) + CoarseCorrection::bytes(particle_count);

@@ -67,7 +67,7 @@ class Method {
 
 // name: a choice of fluid.method.
 std::unique_ptr<Method> make_method(const std::string& name, Backend& backend);
-// Bytes on a device beside what every method needs; list_group: of its DeviceInfo.
-std::uint64_t method_bytes(const std::string& name, std::uint64_t particle_count, std::uint32_t list_group);
+// Bytes on a device beside what every method needs.
+std::uint64_t method_bytes(const std::string& name, std::uint64_t particle_count, const DeviceInfo& device);
 
 }  // namespace fontana

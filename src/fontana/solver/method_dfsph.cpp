@@ -132,7 +132,7 @@ class Dfsph : public Method {
 
         operators_.compute_gradient(s, u(k));
         backend_.launch(Kernel::pressure_residual, count,
-                        {s.constants, operators_.gradient(), operators_.list().count(), operators_.list().list(),
+                        {s.constants, operators_.gradient(), operators_.list().start(), operators_.list().list(),
                          s.particles.position(), operators_.factor(), operators_.rate(), *residual_});
         if (with_coarse_) coarse_.solve(s, *residual_, u(k));
         backend_.launch(Kernel::relax, count,

@@ -44,7 +44,7 @@ class Pcisph : public Method {
                 {s.constants, s.particles.position(), s.particles.velocity(), operators_.gradient(), *predicted_});
             backend_.launch(
                 Kernel::correct_pressure, count,
-                {s.constants, delta, s.particles.position(), *predicted_, operators_.list().count(),
+                {s.constants, delta, s.particles.position(), *predicted_, operators_.list().start(),
                  operators_.list().list(), s.colliders.buffer(), operators_.factor(), *u_, s.particles.spare_words()});
             s.report.iterations = k;
             if (k >= k_least_iterations && mean_of(backend_, s.particles.spare_words(), count) <= tolerance) {

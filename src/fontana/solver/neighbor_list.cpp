@@ -2,79 +2,71 @@
 
 #include <algorithm>
 
-#include "kernels/neighbor_list.h"
-#include "solver/diagnostics.h"
 #include "util/error.h"
 
 namespace fontana {
 namespace {
 
-constexpr std::uint64_t k_usual_length = 48;  // of a particle's own list: a full neighbourhood has 32
-constexpr std::uint64_t k_usual_share = 18;   // of a particle in the list of a group
-// Indices into the lists are 32-bit.
-constexpr std::uint64_t k_most_entries = 0xffffffffu;
+// Kernels count words in 32 bits.
+constexpr std::uint64_t k_most_words = 0xffffffffu;
+
+// A full neighbourhood has 32; every list of a particle's own ends with a word more, and has two more for a long step.
+ListLayout layout_of(const DeviceInfo& device) {
+    if (device.list_group > 1) return {true, device.list_group, 4, 18};
+    if (device.is_gpu) return {false, 1, 2, 48};
+    return {true, 1, 2, 34};
+}
+
+// Words that say where the lists are; of shared ones, how long they are too. The room that they need stands behind.
+std::size_t start_words(const ListLayout& layout, std::size_t particle_count) {
+    return layout.group > 1 ? 2 * ((particle_count + layout.group - 1) / layout.group) : particle_count;
+}
 
 }  // namespace
 
-std::uint64_t NeighborList::entries(std::uint64_t particle_count, std::uint64_t capacity) const {
-    return is_shared() ? capacity : particle_count * capacity;
-}
+NeighborList::NeighborList(Backend& backend) : backend_(backend), layout_(layout_of(backend.device())) {}
 
 void NeighborList::reserve(std::size_t particle_capacity) {
     if (list_ && reserved_ >= particle_capacity) return;
-    const std::uint64_t usual =
-        is_shared() ? std::max<std::uint64_t>(64, particle_capacity * k_usual_share) : k_usual_length;
-    const std::uint64_t capacity = std::max<std::uint64_t>(capacity_, usual),
-                        total = entries(particle_capacity, capacity);
-    if (total > k_most_entries)
+    const std::uint64_t lists = layout_.is_packed ? 1 : particle_capacity,
+                        usual = layout_.is_packed ? std::max<std::uint64_t>(64, layout_.usual_words * particle_capacity)
+                                                  : layout_.usual_words,
+                        capacity = std::max(capacity_, usual), total = lists * capacity;
+    if (total > k_most_words)
         fail(FONTANA_OUT_OF_MEMORY, "neighbour lists of " + std::to_string(particle_capacity) + " particles, " +
-                                        std::to_string(total) + " neighbours in all, cannot be indexed");
+                                        std::to_string(total) + " words in all, cannot be indexed");
     list_.reset();  // the old one first, so that the two never stand side by side; there is none if memory runs out
-    count_ = backend_.allocate("neighbour count",
-                               (is_shared() ? shared_total(particle_capacity) + 1 : particle_capacity) * 4);
-    list_ = backend_.allocate("neighbour list", total * 4);
-    capacity_ = static_cast<std::uint32_t>(capacity);
+    start_ = backend_.allocate("list start", (start_words(layout_, particle_capacity) + 2) * 4);
+    list_ = backend_.allocate("neighbour list", total * layout_.word_bytes);
+    capacity_ = capacity;
     reserved_ = particle_capacity;
 }
 
-std::size_t NeighborList::shared_total(std::size_t particle_count) const {
-    return shared_list_total(static_cast<std::uint32_t>(particle_count), group_);
-}
-
-// A processor walks one particle's list from end to end; a GPU's threads walk side by side.
 void NeighborList::set_layout(StepConstants& constants) const {
-    const bool side_by_side = backend_.device().is_gpu;
-    constants.list_capacity = capacity_;
-    constants.list_particle_stride = side_by_side ? 1 : capacity_;
-    constants.list_neighbor_stride = side_by_side ? static_cast<std::uint32_t>(reserved_) : 1;
-}
-
-std::uint32_t NeighborList::needed(std::size_t particle_count) {
-    if (!is_shared()) return largest_of(backend_, *count_, particle_count);
-    std::uint32_t total = 0;
-    backend_.read(*count_, &total, 4, shared_total(particle_count) * 4);
-    return total;
+    constants.list_capacity = static_cast<std::uint32_t>(capacity_);
+    constants.list_stride = layout_.is_packed ? 1 : static_cast<std::uint32_t>(reserved_);
 }
 
 void NeighborList::build(Particles& particles, Neighborhood& neighborhood, StepConstants& constants) {
-    const std::size_t count = particles.count();
+    const std::size_t count = particles.count(), needed_at = start_words(layout_, count) * 4;
     for (;;) {
         reserve(particles.capacity());
         set_layout(constants);
-        const std::uint32_t nothing = 0;
-        if (is_shared()) backend_.write(*count_, &nothing, 4, shared_total(count) * 4);
+        std::uint32_t needed[2] = {};  // the low word first
+        backend_.write(*start_, needed, sizeof needed, needed_at);
         backend_.launch(Kernel::build_neighbor_list, count,
-                        {constants, particles.position(), neighborhood.cell_start(), *count_, *list_});
-        const std::uint64_t found = needed(count);
-        if (found <= capacity_) return;
-        capacity_ = static_cast<std::uint32_t>(std::min(found + found / 16 + 16, k_most_entries));
+                        {constants, particles.position(), neighborhood.cell_start(), *start_, *list_});
+        backend_.read(*start_, needed, sizeof needed, needed_at);
+        const std::uint64_t words = needed[0] | std::uint64_t{needed[1]} << 32;
+        if (words <= capacity_) return;
+        capacity_ = words + words / 16 + 16;
         list_.reset();
     }
 }
 
-std::uint64_t NeighborList::bytes(std::uint64_t particle_count, std::uint32_t group) {
-    const std::uint64_t words = group > 1 ? k_usual_share : k_usual_length + 1;
-    return particle_count * words * 4 + (group > 1 ? particle_count / group * 8 : 0);
+std::uint64_t NeighborList::bytes(std::uint64_t particle_count, const DeviceInfo& device) {
+    const ListLayout layout = layout_of(device);
+    return start_words(layout, particle_count) * 4 + particle_count * layout.usual_words * layout.word_bytes;
 }
 
 }  // namespace fontana

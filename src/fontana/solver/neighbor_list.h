@@ -10,34 +10,35 @@
 
 namespace fontana {
 
+// How a device has its lists.
+struct ListLayout {
+    bool is_packed;             // one list behind another; or side by side, with as much room for each
+    std::uint32_t group;        // particles that share a list
+    std::uint32_t word_bytes;   // of a list
+    std::uint32_t usual_words;  // of it for each particle, which there is room for at first
+};
+
 class NeighborList {
  public:
-    explicit NeighborList(Backend& backend) : backend_(backend), group_(backend.device().list_group) {}
+    explicit NeighborList(Backend& backend);
 
     // Finds everyone's neighbours and sets the lists' layout in `constants`. Grows until all fit, so that nobody is
-    // left out; OUT_OF_MEMORY says how many neighbours it was about.
+    // left out; OUT_OF_MEMORY says how many words it was about.
     void build(Particles& particles, Neighborhood& neighborhood, StepConstants& constants);
 
-    Buffer& count() { return *count_; }
+    Buffer& start() { return *start_; }
     Buffer& list() { return *list_; }
-    // With so many particles to a list.
-    static std::uint64_t bytes(std::uint64_t particle_count, std::uint32_t group);
+    static std::uint64_t bytes(std::uint64_t particle_count, const DeviceInfo& device);
 
  private:
-    bool is_shared() const { return group_ > 1; }
-    std::uint64_t entries(std::uint64_t particle_count, std::uint64_t capacity) const;
-    // Where in count() the length of all shared lists stands.
-    std::size_t shared_total(std::size_t particle_count) const;
     void reserve(std::size_t particle_capacity);
     void set_layout(StepConstants& constants) const;
-    // What capacity_ must be for the lists just built.
-    std::uint32_t needed(std::size_t particle_count);
 
     Backend& backend_;
-    const std::uint32_t group_;   // particles that share a list
-    std::uint32_t capacity_ = 0;  // neighbours there is room for: on each list, or on all where they are shared
+    const ListLayout layout_;
+    std::uint64_t capacity_ = 0;  // words there is room for: packed, on all lists; else on each
     std::size_t reserved_ = 0;    // particles there is room for
-    std::unique_ptr<Buffer> count_, list_;
+    std::unique_ptr<Buffer> start_, list_;
 };
 
 }  // namespace fontana

@@ -14,19 +14,19 @@ void Operators::begin(Substep& s) {
     list_.build(s.particles, s.neighborhood, s.constants);
     s.place_walls();
     backend_.launch(Kernel::sum_neighborhood, s.particles.count(),
-                    {s.constants, s.particles.position(), s.particles.velocity(), list_.count(), list_.list(),
+                    {s.constants, s.particles.position(), s.particles.velocity(), list_.start(), list_.list(),
                      s.colliders.buffer(), s.particles.density(), *factor_, *wall_rate_, *rate_, *gradient_});
 }
 
 void Operators::compute_rate(Substep& s) {
     backend_.launch(Kernel::density_rate, s.particles.count(),
-                    {s.constants, s.particles.velocity(), list_.count(), list_.list(), s.particles.position(), *factor_,
+                    {s.constants, s.particles.velocity(), list_.start(), list_.list(), s.particles.position(), *factor_,
                      *wall_rate_, *rate_});
 }
 
 void Operators::compute_gradient(Substep& s, Buffer& u) {
     backend_.launch(Kernel::pressure_gradient, s.particles.count(),
-                    {s.constants, u, list_.count(), list_.list(), s.particles.position(), *factor_, *gradient_});
+                    {s.constants, u, list_.start(), list_.list(), s.particles.position(), *factor_, *gradient_});
 }
 
 void Operators::push(Substep& s) {

@@ -8,7 +8,7 @@ namespace fontana {
 namespace {
 
 // Particles that are put together on the host at a time, so that a large block is not there twice.
-constexpr std::size_t k_slice = 65536;
+constexpr std::size_t k_slice = 8192;
 
 template <typename T>
 std::vector<T> read_all(Backend& backend, const Buffer& buffer, std::size_t count) {
@@ -54,23 +54,20 @@ void Particles::reserve(std::size_t capacity) {
     capacity_ = roomy;  // only now: memory may run out halfway
 }
 
-void Particles::append(std::size_t count, const float* position, const float* velocity, const float* mass,
-                       float rest_density) {
+void Particles::append(std::size_t count, const Source& source, float rest_density) {
     reserve(count_ + count);
     for (std::size_t done = 0; done < count; done += k_slice)
-        write_slice(count_ + done, std::min(k_slice, count - done), position + 3 * done, velocity + 3 * done,
-                    mass + done, rest_density);
+        write_slice(done, std::min(count, done + k_slice), source, rest_density);
     count_ += count;
 }
 
-void Particles::write_slice(std::size_t first, std::size_t count, const float* position, const float* velocity,
-                            const float* mass, float rest_density) {
+void Particles::write_slice(std::size_t begin, std::size_t end, const Source& source, float rest_density) {
+    const std::size_t count = end - begin, first = count_ + begin;
     std::vector<float4> x(count), v(count);
     std::vector<std::uint32_t> id(count);
     const std::vector<float> density(count, rest_density), pressure(count, 0.0f);
     for (std::size_t k = 0; k < count; ++k) {
-        x[k] = {position[3 * k], position[3 * k + 1], position[3 * k + 2], mass[k]};
-        v[k] = {velocity[3 * k], velocity[3 * k + 1], velocity[3 * k + 2], 0.0f};
+        source(begin + k, x[k], v[k]);
         id[k] = static_cast<std::uint32_t>(first + k);
     }
     backend_.write(*position_, x.data(), count * 16, first * 16);

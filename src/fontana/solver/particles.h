@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
@@ -35,9 +36,10 @@ class Particles {
     std::size_t capacity() const { return capacity_; }
     static std::uint64_t bytes_per_particle();
 
-    // Ids go on from count(). position and velocity: 3 floats a particle, mass: 1. `rest_density` is what their density
-    // reads until the next substep.
-    void append(std::size_t count, const float* position, const float* velocity, const float* mass, float rest_density);
+    // Says where the k-th of those to be added is, with its mass, and how fast if it is not at rest.
+    using Source = std::function<void(std::size_t k, float4& position, float4& velocity)>;
+    // Ids go on from count(). `rest_density` is what their density reads until the next substep.
+    void append(std::size_t count, const Source& source, float rest_density);
     void set_force(const std::vector<float4>& force_by_id);
     bool has_force() const { return has_force_; }
 
@@ -62,8 +64,7 @@ class Particles {
 
  private:
     void reserve(std::size_t capacity);
-    void write_slice(std::size_t first, std::size_t count, const float* position, const float* velocity,
-                     const float* mass, float rest_density);
+    void write_slice(std::size_t begin, std::size_t end, const Source& source, float rest_density);
     void grow(std::unique_ptr<Buffer>& buffer, const char* name, std::size_t bytes, std::size_t kept_bytes);
 
     Backend& backend_;

@@ -42,7 +42,6 @@ void Solver::count_neighbors(const Parameters& parameters, std::uint32_t* out) {
     search.update(copy, constants);
     const auto found = backend_->allocate("neighbour count", count * 4);
     const auto by_id = backend_->allocate("neighbour count by id", count * 4);
-    constants.list_capacity = 0;  // count_neighbors has no lists to fill
     backend_->launch(Kernel::count_neighbors, count, {constants, copy.position(), search.cell_start(), *found});
     backend_->launch(Kernel::words_by_id, count, {static_cast<std::uint32_t>(count), copy.id(), *found, *by_id});
     backend_->read(*by_id, out, count * 4);

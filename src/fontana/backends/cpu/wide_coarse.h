@@ -39,14 +39,14 @@ inline void add_coarse_neighbors(const StepConstants& c, const CoarseNeighbors& 
 
 // For the members of a group from the one numbered `from` on, which are in one cell.
 inline void coarse_columns(const StepConstants& c, const Members& members, uint from, const float4* position,
-                           const float* weight, const uint* neighbor_count, const uint* list, CoarseColumns* a) {
+                           const float* weight, const uint* list_start, const short* list, CoarseColumns* a) {
     CoarseNeighbors neighbors;
     const auto add_all = [&] {
         for (uint s = from; s < members.count; ++s) add_coarse_neighbors(c, neighbors, members.x[s], a[s]);
         neighbors.count = 0;
     };
     const float4 home = ::home_place(c, members.x[from]);
-    for_list(members.first, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
+    for_list(members.first, list_start, list, position, [&](const uint* j, const Vec4& x_j) {
         const uint k = neighbors.count++;
         neighbors.x[k] = x_j;
         // What is beyond the end of the list has no mass.
@@ -58,8 +58,8 @@ inline void coarse_columns(const StepConstants& c, const Members& members, uint 
 }
 
 inline void coarse_products(uint begin, uint end, const StepConstants& c, const uint&, const uint* cell_start,
-                            const float4* position, const float4* factor, const float* weight,
-                            const uint* neighbor_count, const uint* list, float* table) {
+                            const float4* position, const float4* factor, const float* weight, const uint* list_start,
+                            const short* list, float* table) {
     for (uint cell = begin; cell < end; ++cell) {
         const uint first = cell_start[cell], last = cell_start[cell + 1];
         if (last - first < COARSE_LEAST) continue;
@@ -68,7 +68,7 @@ inline void coarse_products(uint begin, uint end, const StepConstants& c, const 
             const Members members(group, last, position);
             const uint from = first > group ? first - group : 0;
             CoarseColumns a[k_list_group];
-            coarse_columns(c, members, from, position, weight, neighbor_count, list, a);
+            coarse_columns(c, members, from, position, weight, list_start, list, a);
             for (uint s = from; s < members.count; ++s) {
                 const float4 own = weight[group + s] > 0.0f ? factor[group + s] : float4{};
                 a[s].x[0] += own.x;

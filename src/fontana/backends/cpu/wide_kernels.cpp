@@ -98,9 +98,9 @@ void fluid_force(uint begin, uint end, const StepConstants& c, const float4* pac
 }
 
 void build_neighbor_list(uint begin, uint end, const StepConstants& c, const float4* position, const uint* cell_start,
-                         uint* neighbor_count, uint* list) {
+                         uint* list_start, short* list) {
     Candidates candidates(c, position, cell_start);
-    ListWriter writer(c, neighbor_count, list);
+    ListWriter writer(c, list_start, reinterpret_cast<uint*>(list));
     for (uint first = begin; first < end; first += k_list_group) {
         const Members members(first, end, position);
         candidates.choose(members.x, members.count);
@@ -112,7 +112,7 @@ void build_neighbor_list(uint begin, uint end, const StepConstants& c, const flo
 // Adds all neighbours to the sums of every member. They are turned round a few vectors at a time, then visited by each
 // member from the first-level cache: the sums of all members at once are more than there are registers.
 void add_neighbors(const StepConstants& c, const Members& members, const Members& motion, const float4* position,
-                   const float4* velocity, const uint* neighbor_count, const uint* list, NeighborhoodSums* sums) {
+                   const float4* velocity, const uint* list_start, const short* list, NeighborhoodSums* sums) {
     constexpr uint k_room = 8;
     Vec4 x[k_room], v[k_room];
     uint count = 0;
@@ -125,7 +125,7 @@ void add_neighbors(const StepConstants& c, const Members& members, const Members
         }
         count = 0;
     };
-    for_list(members.first, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
+    for_list(members.first, list_start, list, position, [&](const uint* j, const Vec4& x_j) {
         x[count] = x_j;
         v[count] = gather(velocity, j);
         if (++count == k_room) visit_all();
@@ -134,13 +134,13 @@ void add_neighbors(const StepConstants& c, const Members& members, const Members
 }
 
 void sum_neighborhood(uint begin, uint end, const StepConstants& c, const float4* position, const float4* velocity,
-                      const uint* neighbor_count, const uint* list, const ColliderConstants* collider,
-                      float* density_out, float4* factor, float* wall_rate, float* rate, float4* viscous) {
+                      const uint* list_start, const short* list, const ColliderConstants* collider, float* density_out,
+                      float4* factor, float* wall_rate, float* rate, float4* viscous) {
     for (uint first = begin; first < end; first += k_list_group) {
         const Members members(first, end, position), motion(first, end, velocity);
         NeighborhoodSums sums[k_list_group];
         for (NeighborhoodSums& zero : sums) zero = no_neighborhood();
-        add_neighbors(c, members, motion, position, velocity, neighbor_count, list, sums);
+        add_neighbors(c, members, motion, position, velocity, list_start, list, sums);
         for (uint s = 0; s < members.count; ++s) {
             const uint i = first + s;
             const float4 g = sums_of(sums[s].gradient.x, sums[s].gradient.y, sums[s].gradient.z, sums[s].squares);
@@ -159,13 +159,13 @@ void sum_neighborhood(uint begin, uint end, const StepConstants& c, const float4
 // G^T applied to `field` at every member, without the walls' own motion: store(i, the result).
 template <typename Store>
 inline __attribute__((always_inline)) void for_divergence(uint begin, uint end, const StepConstants& c,
-                                                          const uint* neighbor_count, const uint* list,
+                                                          const uint* list_start, const short* list,
                                                           const float4* position, const float4* factor,
                                                           const float4* field, const Store& store) {
     for (uint first = begin; first < end; first += k_list_group) {
         const Members members(first, end, position);
         Vec sum[k_list_group] = {};
-        for_list(first, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
+        for_list(first, list_start, list, position, [&](const uint* j, const Vec4& x_j) {
             const Vec4 a_j = gather(field, j);
             for (uint s = 0; s < k_list_group; ++s)
                 sum[s] += divergence_term(c, x_j.w, quick_pair_of(members.x[s], x_j), a_j);
@@ -176,26 +176,27 @@ inline __attribute__((always_inline)) void for_divergence(uint begin, uint end, 
     }
 }
 
-void density_rate(uint begin, uint end, const StepConstants& c, const float4* velocity, const uint* neighbor_count,
-                  const uint* list, const float4* position, const float4* factor, const float* wall_rate, float* rate) {
-    for_divergence(begin, end, c, neighbor_count, list, position, factor, velocity,
+void density_rate(uint begin, uint end, const StepConstants& c, const float4* velocity, const uint* list_start,
+                  const short* list, const float4* position, const float4* factor, const float* wall_rate,
+                  float* rate) {
+    for_divergence(begin, end, c, list_start, list, position, factor, velocity,
                    [&](uint i, float divergence) { rate[i] = divergence - wall_rate[i]; });
 }
 
-void pressure_residual(uint begin, uint end, const StepConstants& c, const float4* gradient, const uint* neighbor_count,
-                       const uint* list, const float4* position, const float4* factor, const float* target,
+void pressure_residual(uint begin, uint end, const StepConstants& c, const float4* gradient, const uint* list_start,
+                       const short* list, const float4* position, const float4* factor, const float* target,
                        float* residual) {
-    for_divergence(begin, end, c, neighbor_count, list, position, factor, gradient,
+    for_divergence(begin, end, c, list_start, list, position, factor, gradient,
                    [&](uint i, float k_u) { residual[i] = factor[i].w > 0.0f ? target[i] - k_u : 0.0f; });
 }
 
-void pressure_gradient(uint begin, uint end, const StepConstants& c, const float* u, const uint* neighbor_count,
-                       const uint* list, const float4* position, const float4* factor, float4* gradient) {
+void pressure_gradient(uint begin, uint end, const StepConstants& c, const float* u, const uint* list_start,
+                       const short* list, const float4* position, const float4* factor, float4* gradient) {
     for (uint first = begin; first < end; first += k_list_group) {
         const Members members(first, end, position);
         Real3 sum[k_list_group];
         for (Real3& zero : sum) zero = zero_vector();
-        for_list(first, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
+        for_list(first, list_start, list, position, [&](const uint* j, const Vec4& x_j) {
             const Vec weight = x_j.w * gather(u, j);
             for (uint s = 0; s < k_list_group; ++s)
                 sum[s] = add_gradient(sum[s], c, weight, quick_pair_of(members.x[s], x_j));
@@ -208,12 +209,12 @@ void pressure_gradient(uint begin, uint end, const StepConstants& c, const float
 }
 
 void correct_pressure(uint begin, uint end, const StepConstants& c, float delta, const float4* position,
-                      const float4* predicted, const uint* neighbor_count, const uint* list,
+                      const float4* predicted, const uint* list_start, const short* list,
                       const ColliderConstants* collider, const float4* factor, float* u, float* residual) {
     for (uint first = begin; first < end; first += k_list_group) {
         const Members members(first, end, position), then(first, end, predicted);
         Vec density[k_list_group] = {};
-        for_list(first, neighbor_count, list, position, [&](const uint* j, const Vec4& x_j) {
+        for_list(first, list_start, list, position, [&](const uint* j, const Vec4& x_j) {
             const Vec4 y_j = gather(predicted, j);
             for (uint s = 0; s < k_list_group; ++s) {
                 const uint is_near = less_mask(distance_squared(members.x[s], x_j), c.support_radius_squared);

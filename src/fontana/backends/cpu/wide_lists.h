@@ -3,7 +3,7 @@
 // third of the memory of its members' own lists. That a few on it are farther than the support radius from some member
 // costs arithmetic and changes nothing: there W and its gradient are zero.
 //
-// Word 2 g of `neighbor_count` is where the list of group g begins, word 2 g + 1 how long it is, and the last word the
+// Word 2 g of `list_start` is where the list of group g begins, word 2 g + 1 how long it is, and behind them stands the
 // length of all of them. Included once per instruction set, by wide_kernels.cpp.
 #pragma once
 
@@ -29,8 +29,7 @@ inline Vec least_distance_squared(const Members& members, const Vec4& x_j) {
 // threads; what they say does not.
 class ListWriter {
  public:
-    ListWriter(const StepConstants& c, uint* neighbor_count, uint* list)
-        : c_(c), neighbor_count_(neighbor_count), list_(list) {}
+    ListWriter(const StepConstants& c, uint* list_start, uint* list) : c_(c), list_start_(list_start), list_(list) {}
 
     void write(const Members& members, const Candidates& candidates) {
         const uint group = members.first / k_list_group;
@@ -45,15 +44,15 @@ class ListWriter {
         candidates.for_all([&](const Vec4& x_j, const uint* index) {
             count_ += compress_store(hits(members, x_j), index, found_ + count_);
         });
-        neighbor_count_[2 * group] = begin;
-        neighbor_count_[2 * group + 1] = count_ - begin;
+        list_start_[2 * group] = begin;
+        list_start_[2 * group + 1] = count_ - begin;
         next_group_ = group + 1;
     }
 
     void flush() {
         if (count_ == 0) return;
         const uint start = place(count_);
-        for (uint group = first_group_; group < next_group_; ++group) neighbor_count_[2 * group] += start;
+        for (uint group = first_group_; group < next_group_; ++group) list_start_[2 * group] += start;
         if (fits(start, count_)) __builtin_memcpy(list_ + start, found_, count_ * sizeof(uint));
         count_ = 0;
     }
@@ -64,8 +63,7 @@ class ListWriter {
     }
 
     uint place(uint count) const {
-        return __atomic_fetch_add(neighbor_count_ + shared_list_total(c_.particle_count, k_list_group), count,
-                                  __ATOMIC_RELAXED);
+        return take_words(list_start_ + 2 * ((c_.particle_count + k_list_group - 1) / k_list_group), count);
     }
 
     // If not, the host sees the length of all of them and builds them anew.
@@ -77,8 +75,8 @@ class ListWriter {
         candidates.for_all(
             [&](const Vec4& x_j, const uint*) { count += static_cast<uint>(__builtin_popcount(hits(members, x_j))); });
         const uint start = place(count);
-        neighbor_count_[2 * group] = start;
-        neighbor_count_[2 * group + 1] = count;
+        list_start_[2 * group] = start;
+        list_start_[2 * group + 1] = count;
         if (!fits(start, count)) return;
         uint* out = list_ + start;
         candidates.for_all([&](const Vec4& x_j, const uint* index) {
@@ -91,23 +89,21 @@ class ListWriter {
 
     static constexpr uint k_room = 4 * Candidates::k_room;
     const StepConstants& c_;
-    uint* const neighbor_count_;
+    uint* const list_start_;
     uint* const list_;
     uint count_ = 0, first_group_ = 0, next_group_ = 0;
     uint found_[k_room + width];
 };
 
-inline uint list_length_of(uint first, const uint* neighbor_count) {
-    return neighbor_count[2 * (first / k_list_group) + 1];
-}
+inline uint list_length_of(uint first, const uint* list_start) { return list_start[2 * (first / k_list_group) + 1]; }
 
 // Calls visit(their indices, their positions) for every vector of neighbours on the list of the group that begins at
 // particle `first`. Lanes beyond the end of the list have valid indices and weigh nothing.
 template <typename Visit>
-inline __attribute__((always_inline)) void for_list(uint first, const uint* neighbor_count, const uint* list,
+inline __attribute__((always_inline)) void for_list(uint first, const uint* list_start, const short* list,
                                                     const float4* position, const Visit& visit) {
-    const uint count = list_length_of(first, neighbor_count);
-    const uint* const mine = list + neighbor_count[2 * (first / k_list_group)];
+    const uint count = list_length_of(first, list_start);
+    const uint* const mine = reinterpret_cast<const uint*>(list) + list_start[2 * (first / k_list_group)];
     for (uint k = 0; k < count; k += width) {
         Vec4 x_j = gather(position, mine + k);
         if (count - k < width) x_j.w = keep((1u << (count - k)) - 1u, x_j.w);

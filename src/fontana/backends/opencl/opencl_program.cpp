@@ -17,6 +17,7 @@ namespace {
 // NaNs must survive, so nothing here may assume finite numbers.
 std::string build_options(const OpenClDevice& device, bool strict) {
     std::string options = "-cl-std=CL1.2 -DFONTANA_GROUP_SIZE=" + std::to_string(device.group_size);
+    if (!device.info.is_gpu) options += " -DFONTANA_PACKED_LISTS";  // kernels/neighbor_list.h
     if (!strict) return options + " -cl-mad-enable -cl-no-signed-zeros";
     options += " -DFONTANA_STRICT";
     if (device.rounds_divisions_correctly) options += " -cl-fp32-correctly-rounded-divide-sqrt";
