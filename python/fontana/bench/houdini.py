@@ -17,7 +17,7 @@ from fontana.bench._options import budget_option, counts_option, scenes_option, 
 from fontana.bench._results import publish_json, publish_picture
 from fontana.bench._scenes import SPACING, bench_scene
 from fontana.bench._schemes import SCHEMES, Scheme
-from fontana.bench._timing import SUBSTEPS_PER_FRAME, significant, statistics
+from fontana.bench._timing import SUBSTEPS_PER_FRAME, beyond_budget, significant, statistics
 
 WARM_UP_FRAMES = 2
 LEAST_PAIRS, MOST_PAIRS = 5, 30
@@ -122,8 +122,8 @@ def _cell(
     budget, threads, count = settings["budget_seconds"], settings["threads"], rows[-1]["particles"]
     try:
         expected = _predict(scheme, name, rows, driver, settings)
-        if 2.0 * LEAST_PAIRS * expected > budget:
-            return {"state": "cut off", "predicted_frame_seconds": significant(expected)}
+        if reason := beyond_budget(2.0 * LEAST_PAIRS * expected, budget, f"{LEAST_PAIRS} pairs of frames"):
+            return {"state": "cut off", "reason": reason, "predicted_frame_seconds": significant(expected)}
         heard = _ask(scheme, name, count, driver, (WARM_UP_FRAMES, MOST_PAIRS, budget), threads)
     except _core.FontanaError as error:
         return {"state": "failed", "reason": str(error)}

@@ -15,7 +15,7 @@ from fontana.bench._results import publish_json, publish_picture
 from fontana.bench._scenes import SPACING, bench_scene
 from fontana.bench._schemes import REFERENCE, SCHEMES, Scheme
 from fontana.bench._tables import print_results, progress_text
-from fontana.bench._timing import SUBSTEPS_PER_FRAME, WARM_UP_SUBSTEPS, clock_substeps, significant
+from fontana.bench._timing import SUBSTEPS_PER_FRAME, WARM_UP_SUBSTEPS, beyond_budget, clock_substeps, significant
 
 RESULTS_NAME = "thesis.json"
 _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
@@ -98,8 +98,8 @@ def _cell(scheme: Scheme, scene: object, rows: list[dict], missing: dict[str, st
     budget, threads = settings["budget_seconds"], settings["threads"]
     try:
         expected = _predict(scheme, scene, rows, budget, threads)
-        if expected > budget:
-            cell = {"state": "cut off", "predicted_substep_seconds": significant(expected)}
+        if reason := beyond_budget(expected, budget, "one substep"):
+            cell = {"state": "cut off", "reason": reason, "predicted_substep_seconds": significant(expected)}
         else:
             simulation, dt = scene.build(scheme.backend, threads)
             clocked = clock_substeps(simulation, dt, scheme.neighbors, budget)
