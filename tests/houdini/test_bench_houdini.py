@@ -66,7 +66,8 @@ def test_the_figures_are_drawn_and_drawn_again(small_run, tmp_path):
 
 def test_a_row_that_is_cut_off_says_so_and_why(tmp_path, native_build):
     path = tmp_path / "houdini.json"
-    done = bench_houdini(ROOT, "--counts", "100,300", "--scenes", "box", "--budget", 1e-9, "--threads", 1, "--json", path)
+    options = ("--counts", "100,300", "--scenes", "box", "--budget", 1e-9, "--threads", 1)
+    done = bench_houdini(ROOT, *options, "--json", path)
     assert done.returncode == 0, done.stderr
     first, second = json.loads(path.read_text())["scenes"]["box"]
     assert {cell["state"] for cell in first["cells"].values()} <= {"measured", "not run"}
@@ -74,7 +75,8 @@ def test_a_row_that_is_cut_off_says_so_and_why(tmp_path, native_build):
         if cell["state"] == "not run":
             continue
         assert cell["state"] == "cut off" and cell["predicted_frame_seconds"] > 0
-        assert "5 pairs of frames would take about" in cell["reason"] and "budget of a number is 1e-09 s" in cell["reason"]
+        assert "5 pairs of frames would take about" in cell["reason"]
+        assert "budget of a number is 1e-09 s" in cell["reason"]
         assert f"cut off: box, 300 particles, {name}: {cell['reason']}" in done.stdout
         assert f"box, 300 particles, {name}: cut off: {cell['reason']}" in done.stderr
 
