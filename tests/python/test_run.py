@@ -6,9 +6,11 @@ import contextlib
 import json
 import os
 import pty
+import re
 import resource
 import signal
 import subprocess
+import termios
 import time
 from pathlib import Path
 
@@ -75,10 +77,14 @@ def test_json_lines_tell_each_frame(fontana, drop_file: Path) -> None:
     assert events[3]["frame"] == 3
 
 
-def test_a_terminal_gets_a_bar(drop_file: Path, tmp_path: Path) -> None:
+def show_on_terminal(drop_file: Path, folder: Path, columns: int) -> str:
+    """What `fontana run` writes to a terminal of so many columns."""
     master, slave = pty.openpty()
+    termios.tcsetwinsize(slave, (24, columns))
     command = fontana_command("run", drop_file, "--no-picture")
-    with subprocess.Popen(command, cwd=tmp_path, stdout=slave, stderr=slave, close_fds=True) as process:
+    # readline, where something imported it, tells child processes its own COLUMNS; os.environ does not have them.
+    ends = {"stdin": slave, "stdout": slave, "stderr": slave, "env": dict(os.environ)}
+    with subprocess.Popen(command, cwd=folder, close_fds=True, **ends) as process:
         os.close(slave)
         shown = b""
         with contextlib.suppress(OSError):  # how Linux says that the other end is closed
@@ -86,8 +92,19 @@ def test_a_terminal_gets_a_bar(drop_file: Path, tmp_path: Path) -> None:
                 shown += part
         os.close(master)
     assert process.returncode == 0
+    return shown.decode()
+
+
+def test_a_terminal_gets_a_bar(drop_file: Path, tmp_path: Path) -> None:
+    shown = show_on_terminal(drop_file, tmp_path, columns=120)
     for word in ("frame 6/6", "\u2501\u2501", "216 particles", "done: 6 frames"):
-        assert word in shown.decode()
+        assert word in shown
+
+
+def test_a_narrow_terminal_gets_the_whole_of_a_frame(drop_file: Path, tmp_path: Path) -> None:
+    shown = show_on_terminal(drop_file, tmp_path, columns=60)
+    words = " ".join(re.sub(r"\x1b\[[\d;?]*[a-zA-Z]", "", shown).split())
+    assert re.search(r"density \+[\d.]+% \(max [\d.]+%\) in [\d.]+ iterations", words)
 
 
 def test_two_runs_give_the_same_bytes(fontana, whole, drop_file: Path, tmp_path: Path) -> None:
