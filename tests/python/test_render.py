@@ -157,7 +157,9 @@ def test_without_a_display_it_works(fontana, drop_cache):
 
 def test_without_moderngl_there_is_a_sentence(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "moderngl", None)
-    with pytest.raises(package.DeviceUnavailable, match=r"pip install 'fontana\[view\]'"):
+    with pytest.raises(
+        package.BadInput, match=r"a picture needs moderngl, which is not here: .* -m pip install 'fontana\[view\]'"
+    ):
         create_headless_context()
 
 
