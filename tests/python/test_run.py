@@ -124,6 +124,17 @@ def test_the_same_command_continues_and_resume_adds_frames(fontana, whole, drop_
     assert "all 6 frames are there" in fontana("resume", out, "--frames", 6).stdout
 
 
+@pytest.mark.parametrize("again", [(), ("--restart",)])
+def test_a_device_that_refuses_leaves_the_frames_alone(fontana, whole, drop_file: Path, tmp_path: Path, again) -> None:
+    out = tmp_path / "kept"
+    common = ("run", drop_file, "--out", out, "--no-picture")
+    fontana(*common)
+    absent = {"FONTANA_OPENCL_LIBRARY": "/nowhere/libOpenCL.so"}
+    done = fontana(*common, "--backend", "opencl", *again, env=absent, code=5)
+    assert "/nowhere/libOpenCL.so" in error_line(done) and done.stdout == ""
+    assert frames_of(out) == whole
+
+
 def test_resume_goes_on_without_the_scene_file(fontana, whole, drop_file: Path, tmp_path: Path) -> None:
     fontana("run", drop_file, "--out", "moved", "--frames", 3, "--no-picture")
     drop_file.unlink()

@@ -57,6 +57,8 @@ def run_scene(scene: Scene, options: RunOptions, reporter: Reporter) -> None:
     simulation = scene.build()
     simulation.check()
     _check_source(scene, simulation)
+    # Starts the device. What it refuses leaves the frames of a former run alone, with --restart too.
+    check_memory(simulation, simulation.emitted_by(scene.frame_count))
     folder = RunFolder(options.out, scene.name)
     folder.create()
     with FolderLock(folder.path) as lock, StopSignals("stopping after this frame and saving a checkpoint") as stop:
@@ -200,12 +202,11 @@ class _Run:
         return Manifest(self.folder.path, data)
 
     def _preflight(self) -> None:
-        """Refuses, before any work, what would fail at the last frame for want of memory or disk."""
+        """Refuses, before any work, what would fail at the last frame for want of disk."""
         device = self.simulation.device()
         names = ("backend", "name", "driver", "memory_bytes", "compute_units")
         self.manifest.data["device"] = {name: getattr(device, name) for name in names}
         count = self.simulation.emitted_by(self.scene.frame_count)
-        check_memory(self.simulation, count)
         frame_bytes = count * sum(BYTES_PER_PARTICLE[format] for format in self.options.formats)
         self.folder.check_space(frame_bytes, count)
 
