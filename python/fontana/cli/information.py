@@ -39,7 +39,7 @@ def print_table(columns: list[str], rows: list[list[str]]) -> None:
     click.echo("\n".join(line.rstrip() for line in lines.get().splitlines()))
 
 
-@click.command()
+@click.command(short_help="What can compute here, and what cannot and why.")
 @_as_json
 def devices(as_json: bool) -> None:
     """List what can compute here, and what cannot and why.
@@ -113,7 +113,7 @@ def schema() -> None:
     click.echo(json.dumps(scene_schema(), indent=2))
 
 
-@click.command()
+@click.command(short_help="What a parameter, an emitter or a collider means.")
 @click.argument("name", required=False)
 def explain(name: str | None) -> None:
     """Say what a parameter, an emitter or a collider means; without NAME, list them.
@@ -192,7 +192,7 @@ def _explain_fields(name: str, fields: tuple) -> None:
     print_table(["  field", "unit", "range", "what it is"], rows)
 
 
-@click.command()
+@click.command(short_help="The named fluids and their measured values.")
 @click.argument("name", required=False)
 @_as_json
 def fluids(name: str | None, as_json: bool) -> None:

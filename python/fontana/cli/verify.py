@@ -12,6 +12,7 @@ import numpy as np
 from fontana import _core
 from fontana.backends import absent_backends, absent_neighbors
 from fontana.cli.information import print_table
+from fontana.cli.usage import Choice
 from fontana.tables import parameters
 
 METHODS = parameters()["fluid.method"].choices
@@ -27,9 +28,9 @@ class Disagreement(_core.InternalError):
     """A backend computes something else than the reference."""
 
 
-@click.command()
+@click.command(short_help="Compare devices and schemes with the plain CPU.")
 @click.option(
-    "--method", "methods", multiple=True, type=click.Choice(METHODS), help="Only this one; repeatable. [default: all]"
+    "--method", "methods", multiple=True, type=Choice(METHODS), help="Only this one; repeatable. [default: all]"
 )
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
 def verify(methods: tuple[str, ...], as_json: bool) -> None:
