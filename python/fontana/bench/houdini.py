@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from statistics import quantiles
@@ -12,12 +11,13 @@ import click
 from fontana import _core
 from fontana.bench._cook import build_driver, run_driver
 from fontana.bench._houdini_tables import print_results, progress_text
-from fontana.bench._machine import describe_conditions, missing_backends, note_end
+from fontana.bench._machine import missing_backends
 from fontana.bench._options import budget_option, counts_option, scenes_option, threads_option
-from fontana.bench._results import publish_json, publish_picture
-from fontana.bench._scenes import SPACING, bench_scene
+from fontana.bench._results import publish_json
+from fontana.bench._scenes import bench_scene
 from fontana.bench._schemes import SCHEMES, Scheme
-from fontana.bench._timing import SUBSTEPS_PER_FRAME, beyond_budget, significant, statistics
+from fontana.bench._tables_run import describe_results, measure_and_publish
+from fontana.bench._timing import beyond_budget, significant, statistics
 
 WARM_UP_FRAMES = 2
 LEAST_PAIRS, MOST_PAIRS = 5, 30
@@ -50,41 +50,18 @@ def command(path: Path, counts: list[int], budget: float, scene_names: list[str]
       fontana bench houdini --counts 100000 --scenes box --budget 90 --json houdini.json
       fontana bench plot out/bench/houdini.json
     """
-    picture = path.with_suffix(".png")
-    if picture == path:
+    if path.suffix == ".png":
         raise _core.BadInput(f"--json: {path} is the name of the picture; expected another ending, such as .json")
-    results = describe_results(counts, budget, scene_names, threads)
+    settings = {"counts": counts, "budget_seconds": budget, "threads": threads}
+    settings |= {"warm_up_frames": WARM_UP_FRAMES, "most_pairs": MOST_PAIRS}
+    results = describe_results("houdini", scene_names, **settings)
+    results |= {"overhead_percent_100k": None, "overhead_processor_percent_100k": None}
     publish_json(path, results)  # a folder that cannot be written is found now, not in the end
     click.echo("building the node against the double of the HDK ...", err=True)
     driver = build_driver(Path.cwd())
-    try:
-        measure_all(results, driver, missing_backends(), lambda: publish_json(path, results))
-        note_end(results)
-    except KeyboardInterrupt:
-        note_end(results, "interrupted")
-    publish_json(path, results)
-    print_results(results)
-    publish_picture(results, picture)
-    click.echo(f"written: {path}, {picture}")
-    if results["state"] == "interrupted":
-        raise KeyboardInterrupt
-
-
-def describe_results(counts: list[int], budget: float, scene_names: list[str], threads: int) -> dict:
-    """The results before the first number: conditions and settings."""
-    conditions = describe_conditions(["fontana", *sys.argv[1:]])
-    settings = {
-        "counts": counts,
-        "budget_seconds": budget,
-        "threads": threads,
-        "particle_spacing": SPACING,
-        "substeps_per_frame": SUBSTEPS_PER_FRAME,
-        "warm_up_frames": WARM_UP_FRAMES,
-        "most_pairs": MOST_PAIRS,
-    }
-    scenes: dict[str, list] = {name: [] for name in scene_names}
-    goal = {"overhead_percent_100k": None, "overhead_processor_percent_100k": None}
-    return {"benchmark": "houdini", "state": "running"} | goal | conditions | {"settings": settings, "scenes": scenes}
+    measure_and_publish(
+        results, path, lambda publish: measure_all(results, driver, missing_backends(), publish), print_results
+    )
 
 
 def measure_all(results: dict, driver: tuple[Path, Path], missing: dict[str, str], publish: Callable[[], None]) -> None:

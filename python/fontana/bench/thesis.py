@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import click
 
 from fontana import _core
-from fontana.bench._machine import describe_conditions, missing_backends, note_end
+from fontana.bench._machine import missing_backends
 from fontana.bench._options import budget_option, counts_option, scenes_option, threads_option
-from fontana.bench._results import publish_json, publish_picture
-from fontana.bench._scenes import SPACING, bench_scene
+from fontana.bench._results import publish_json
+from fontana.bench._scenes import bench_scene
 from fontana.bench._schemes import REFERENCE, SCHEMES, Scheme
 from fontana.bench._tables import print_results, progress_text
-from fontana.bench._timing import SUBSTEPS_PER_FRAME, WARM_UP_SUBSTEPS, beyond_budget, clock_substeps, significant
+from fontana.bench._tables_run import describe_results, measure_and_publish
+from fontana.bench._timing import WARM_UP_SUBSTEPS, beyond_budget, clock_substeps, significant
 
 RESULTS_NAME = "thesis.json"
 _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
@@ -47,34 +47,10 @@ def command(out: Path, counts: list[int], budget: float, scene_names: list[str],
       fontana bench plot out/bench/thesis.json
     """
     path = out / RESULTS_NAME
-    results = describe_results(counts, budget, scene_names, threads)
+    settings = {"counts": counts, "budget_seconds": budget, "threads": threads, "warm_up_substeps": WARM_UP_SUBSTEPS}
+    results = describe_results("thesis", scene_names, **settings)
     publish_json(path, results)  # a folder that cannot be written is found now, not in the end
-    try:
-        measure_all(results, missing_backends(), lambda: publish_json(path, results))
-        note_end(results)
-    except KeyboardInterrupt:
-        note_end(results, "interrupted")
-    publish_json(path, results)
-    print_results(results)
-    publish_picture(results, path.with_suffix(".png"))
-    click.echo(f"written: {path}, {path.with_suffix('.png')}")
-    if results["state"] == "interrupted":
-        raise KeyboardInterrupt
-
-
-def describe_results(counts: list[int], budget: float, scene_names: list[str], threads: int) -> dict:
-    """The results before the first number: conditions and settings."""
-    conditions = describe_conditions(["fontana", *sys.argv[1:]])
-    settings = {
-        "counts": counts,
-        "budget_seconds": budget,
-        "threads": threads,
-        "particle_spacing": SPACING,
-        "substeps_per_frame": SUBSTEPS_PER_FRAME,
-        "warm_up_substeps": WARM_UP_SUBSTEPS,
-    }
-    scenes: dict[str, list] = {name: [] for name in scene_names}
-    return {"benchmark": "thesis", "state": "running", **conditions, "settings": settings, "scenes": scenes}
+    measure_and_publish(results, path, lambda publish: measure_all(results, missing_backends(), publish), print_results)
 
 
 def measure_all(results: dict, missing: dict[str, str], publish: Callable[[], None]) -> None:

@@ -238,7 +238,8 @@ class _Run:
         self._checkpoint()
         message = f"stopped after frame {len(self.manifest.frames)} of {self.scene.frame_count}"
         self._leave("interrupted", message)
-        raise StoppedError(self.stop.requested, message)
+        going_on = shlex.join(["fontana", "resume", str(self.folder.path)])
+        raise StoppedError(self.stop.requested, f"{message}; {going_on} goes on")
 
     def _leave(self, state: str, message: str) -> None:
         self.manifest.data |= {"state": state, "message": message}
