@@ -20,7 +20,8 @@ from command_line import error_line, fontana_command
 import fontana as package
 from fontana.runs import stop
 from fontana.runs.reporters import Reporter
-from fontana.runs.runner import RunOptions, StoppedError, run_scene
+from fontana.runs.runner import RunOptions, run_scene
+from fontana.runs.stop import StoppedError
 from fontana.scene import load_scene
 
 

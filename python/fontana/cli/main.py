@@ -9,8 +9,7 @@ import traceback
 
 import click
 
-from fontana import _core
-from fontana.cli import exit_codes
+from fontana import _core, exit_codes
 from fontana.cli.bench import bench
 from fontana.cli.files import export, mesh
 from fontana.cli.information import devices, explain, fluids, scenes, schema

@@ -27,8 +27,7 @@ from fontana.runs.cache import Cache, read_checked
 from fontana.runs.frame_numbers import refuse_skipped
 from fontana.runs.lock import FolderLock
 from fontana.runs.progress import Quiet
-from fontana.runs.runner import StoppedError
-from fontana.runs.stop import StopSignals
+from fontana.runs.stop import StoppedError, StopSignals
 
 _SIGNAL_DELAY = 0.2  # s until a signal that reached another process has reached this one too
 

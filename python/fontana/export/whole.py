@@ -12,8 +12,7 @@ from fontana.export.target import Target
 from fontana.runs.cache import Cache
 from fontana.runs.frame_numbers import refuse_skipped
 from fontana.runs.progress import Quiet
-from fontana.runs.runner import StoppedError
-from fontana.runs.stop import StopSignals
+from fontana.runs.stop import StoppedError, StopSignals
 
 
 class FrameWriter(Protocol):

@@ -17,20 +17,12 @@ from fontana.runs.folder import RunFolder
 from fontana.runs.lock import FolderLock
 from fontana.runs.manifest import Manifest, hash_text
 from fontana.runs.reporters import Reporter
-from fontana.runs.stop import StopSignals
+from fontana.runs.stop import StoppedError, StopSignals
 from fontana.runs.text import length
 from fontana.scene import Scene, changed_keys, digest, physics
 
 DEFAULT_CHECKPOINT_EVERY = 10
 _NOTHING_SAVED = -1
-
-
-class StoppedError(Exception):
-    """The run was stopped by a signal; everything so far is saved. `signal` is its number."""
-
-    def __init__(self, signal: int, message: str):
-        super().__init__(message)
-        self.signal = signal
 
 
 @dataclass

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from fontana import _core
 from fontana.backends import absent_backends, absent_neighbors, chosen_device
-from fontana.cli.exit_codes import sentence
+from fontana.exit_codes import sentence
 from fontana.formats import particle_radius
 from fontana.gl.frame_data import FrameData
 from fontana.runs.runner import frame_record
