@@ -12,6 +12,9 @@
 
 namespace fontana_python {
 
+// Called with the finished share of a frame; what it returns stops the frame if it is true.
+using ProgressFunction = std::function<nb::object(double)>;
+
 class Simulation {
  public:
     Simulation();
@@ -47,7 +50,7 @@ class Simulation {
     NumpyArray<std::uint32_t> count_neighbors();
 
     // The run (simulation_run.cpp).
-    FrameReport step_frame(std::optional<std::function<bool(double)>> progress);
+    FrameReport step_frame(std::optional<ProgressFunction> progress);
     std::int64_t frame() const;
     Device device();
     std::vector<KernelProfile> profile();

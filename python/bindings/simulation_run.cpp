@@ -10,19 +10,26 @@ namespace {
 // What the library calls between substeps. An exception cannot pass through C: it stays set in Python, and the step
 // ends.
 struct Progress {
-    std::optional<std::function<bool(double)>> function;
+    std::optional<ProgressFunction> function;
     bool failed = false;
 
     bool wants_stop(double fraction) {
         nb::gil_scoped_acquire acquire;
         try {
-            const bool stop = function && (*function)(fraction);
+            const bool stop = function && is_true((*function)(fraction));
             if (PyErr_CheckSignals() == 0) return stop;
         } catch (nb::python_error& error) {
             error.restore();
         }
         failed = true;
         return true;
+    }
+
+    // As Python's `if` would see it: a callback that returns nothing goes on.
+    static bool is_true(const nb::object& value) {
+        const int truth = PyObject_IsTrue(value.ptr());
+        if (truth < 0) throw nb::python_error();
+        return truth == 1;
     }
 
     static int call(void* progress, double fraction) {
@@ -32,7 +39,7 @@ struct Progress {
 
 }  // namespace
 
-FrameReport Simulation::step_frame(std::optional<std::function<bool(double)>> function) {
+FrameReport Simulation::step_frame(std::optional<ProgressFunction> function) {
     FrameReport report;
     Progress progress{std::move(function)};
     check(fontana_set_progress(handle_, &Progress::call, &progress));

@@ -124,6 +124,12 @@ def test_a_stopped_frame_goes_on(drop: dict) -> None:
     assert np.array_equal(parted.step().position, whole.step().position)
 
 
+def test_a_progress_function_need_not_answer(drop: dict) -> None:
+    shares = []
+    fontana.Simulation(drop).step(progress=shares.append)
+    assert shares[-1] == pytest.approx(1.0)
+
+
 def test_frames_without_a_count_are_those_of_the_scene(drop: dict) -> None:
     simulation = fontana.Simulation(drop)
     simulation.step()

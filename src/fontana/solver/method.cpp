@@ -50,7 +50,7 @@ void Substep::choose_time_step() {
     if (!(now.speed < 1e12) || !(now.acceleration < 1e18))
         fail(FONTANA_UNSTABLE, "the fluid has blown up: a particle's speed or acceleration is no longer a number");
     const double speed = std::max(now.speed, parameters.time_simulation_scale * fastest(scene_colliders, time));
-    report.step = fontana::choose_time_step(parameters, speed, now.acceleration, remaining);
+    report.step = fontana::choose_time_step(parameters, {speed, now.acceleration, now.density_error_max}, remaining);
     constants.dt = static_cast<float>(report.step.dt);
     constants.inverse_dt = 1.0f / constants.dt;
 }

@@ -23,9 +23,16 @@ struct TimeStep {
 // with H the support radius and d = H / 2.
 fontana_time_step_limits time_step_limits(const Parameters& parameters, double speed, double acceleration);
 
+// What the next substep depends on: of the fastest, the most accelerated and the densest particle.
+struct StepState {
+    double speed;          // m/s
+    double acceleration;   // m/s^2
+    double density_error;  // density / rest density - 1
+};
+
 // The next substep when `remaining` seconds of the frame are left: the smallest limit, shortened so that the rest of
-// the frame divides evenly.
-TimeStep choose_time_step(const Parameters& parameters, double speed, double acceleration, double remaining);
+// the frame divides evenly. One more limit than above is "density_error", of solver.density_error_max.
+TimeStep choose_time_step(const Parameters& parameters, const StepState& state, double remaining);
 
 // Throws BAD_INPUT with the limit and a remedy where a fixed step, or the most substeps allowed, cannot integrate the
 // fluid stably.
