@@ -12,13 +12,14 @@ from fontana import _core
 from fontana.bench._cook import build_driver, run_driver
 from fontana.bench._houdini_tables import print_results, progress_text
 from fontana.bench._machine import missing_backends
-from fontana.bench._options import budget_option, counts_option, scenes_option, threads_option
+from fontana.bench._options import budget_option, counts_option, out_option, scenes_option, threads_option
 from fontana.bench._results import publish_json
 from fontana.bench._scenes import bench_scene
 from fontana.bench._schemes import SCHEMES, Scheme
 from fontana.bench._tables_run import describe_results, measure_and_publish
 from fontana.bench._timing import beyond_budget, significant, statistics
 
+RESULTS_NAME = "houdini.json"
 WARM_UP_FRAMES = 2
 LEAST_PAIRS, MOST_PAIRS = 5, 30
 GOAL_COUNT = 100_000
@@ -26,19 +27,12 @@ _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
 
 
 @click.command(short_help="The solver node beside the library: the thesis's tables of Houdini anew.")
-@click.option(
-    "--json",
-    "path",
-    type=click.Path(path_type=Path, dir_okay=False),
-    default=Path("out/bench/houdini.json"),
-    show_default=True,
-    help="File of the results; their picture, a .png, is beside it.",
-)
+@out_option(RESULTS_NAME)
 @counts_option
 @budget_option(20.0, "five pairs of frames")
 @scenes_option
 @threads_option
-def command(path: Path, counts: list[int], budget: float, scene_names: list[str], threads: int) -> None:
+def command(out: Path, counts: list[int], budget: float, scene_names: list[str], threads: int) -> None:
     """Time the solver node's cook beside the same frames through the library: Tables 3 and 4, Figs. 17 and 18.
 
     The node is compiled against a double of the HDK and cooks in it: points in, ten substeps, points out. Frames of
@@ -47,11 +41,10 @@ def command(path: Path, counts: list[int], budget: float, scene_names: list[str]
     \b
     Examples:
       fontana bench houdini
-      fontana bench houdini --counts 100000 --scenes box --budget 90 --json houdini.json
+      fontana bench houdini --counts 100000 --scenes box --budget 90 --out out/goal
       fontana bench plot out/bench/houdini.json
     """
-    if path.suffix == ".png":
-        raise _core.BadInput(f"--json: {path} is the name of the picture; expected another ending, such as .json")
+    path = out / RESULTS_NAME
     settings = {"counts": counts, "budget_seconds": budget, "threads": threads}
     settings |= {"warm_up_frames": WARM_UP_FRAMES, "most_pairs": MOST_PAIRS}
     results = describe_results("houdini", scene_names, **settings)

@@ -9,7 +9,7 @@ import click
 
 from fontana import _core
 from fontana.bench._machine import missing_backends
-from fontana.bench._options import budget_option, counts_option, scenes_option, threads_option
+from fontana.bench._options import budget_option, counts_option, out_option, scenes_option, threads_option
 from fontana.bench._results import publish_json
 from fontana.bench._scenes import bench_scene
 from fontana.bench._schemes import REFERENCE, SCHEMES, Scheme
@@ -22,13 +22,7 @@ _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
 
 
 @click.command(short_help="Four schemes in two scenes: the thesis's tables anew.")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=Path("out/bench"),
-    show_default=True,
-    help="Folder of thesis.json and thesis.png.",
-)
+@out_option(RESULTS_NAME)
 @counts_option
 @budget_option(5.0, "one substep")
 @scenes_option
