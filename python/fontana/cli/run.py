@@ -9,7 +9,6 @@ from pathlib import Path
 
 import click
 
-from fontana import _core
 from fontana.cli.usage import Choice
 from fontana.formats import FORMATS
 from fontana.overrides import parse_assignment
@@ -148,10 +147,7 @@ def resume(
       fontana resume out/fountain --frames 480
       fontana resume out/fountain --backend opencl
     """
-    manifest = Manifest.load(folder)
-    if manifest is None:
-        raise _core.BadInput(f'"{folder}" has no run.json: it is not the folder of a run')
-    data = manifest.data
+    data = Manifest.of_run(folder).data
     scene = resolve(data["scene"], data["scene"]["name"], _settings(backend, threads, frames))
     options = RunOptions(
         out=folder,
