@@ -28,6 +28,9 @@ using Point = std::array<double, 3>;
 void check(fontana_status status);
 [[noreturn]] void bad_input(const std::string& sentence);
 
+// The words of "grid|all-pairs".
+nb::tuple words(const std::string& choices);
+
 // Each adds one subject to the module. Errors come first: all else may raise them.
 void bind_errors(nb::module_& m);
 void bind_parameters(nb::module_& m);

@@ -7,6 +7,7 @@ Device::Device(const fontana_device& device)
       name(device.name),
       driver(device.driver),
       reason(device.reason),
+      neighbors(device.neighbors),
       memory_bytes(device.memory_bytes),
       compute_units(device.compute_units),
       is_gpu(device.is_gpu != 0),
@@ -49,7 +50,8 @@ void bind_devices(nb::module_& m) {
         .def_ro("compute_units", &Device::compute_units)
         .def_ro("is_gpu", &Device::is_gpu)
         .def_ro("available", &Device::available)
-        .def_ro("reason", &Device::reason);
+        .def_ro("reason", &Device::reason)
+        .def_prop_ro("neighbors", [](const Device& device) { return words(device.neighbors); });
     m.def("devices", &devices);
 }
 

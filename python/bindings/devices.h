@@ -10,7 +10,7 @@ namespace fontana_python {
 struct Device {
     explicit Device(const fontana_device& device);
 
-    std::string backend, name, driver, reason;
+    std::string backend, name, driver, reason, neighbors;
     std::uint64_t memory_bytes;
     std::uint32_t compute_units;
     bool is_gpu, available;

@@ -29,12 +29,7 @@ struct Parameter {
         }
     }
 
-    nb::tuple choices() const {
-        nb::list words;
-        std::istringstream text(row.choices);
-        for (std::string word; std::getline(text, word, '|');) words.append(word);
-        return nb::tuple(words);
-    }
+    nb::tuple choices() const { return words(row.choices); }
 };
 
 std::vector<Parameter> parameters() {
@@ -50,6 +45,13 @@ double smoothing_kernel(const std::string& kernel, const std::string& quantity, 
 }
 
 }  // namespace
+
+nb::tuple words(const std::string& choices) {
+    nb::list result;
+    std::istringstream text(choices);
+    for (std::string word; std::getline(text, word, '|');) result.append(word);
+    return nb::tuple(result);
+}
 
 void bind_parameters(nb::module_& m) {
     nb::class_<Parameter>(m, "Parameter")

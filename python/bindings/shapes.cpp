@@ -22,10 +22,18 @@ Enum value_of(const std::vector<std::string>& words, const std::string& word, co
 
 void set_field(double& field, nb::handle value) { field = nb::cast<double>(value); }
 void set_field(int& field, nb::handle value) { field = nb::cast<int>(value); }
+void set_field(bool& field, nb::handle value) { field = nb::cast<bool>(value); }
 void set_field(double (&field)[3], nb::handle value) {
     const auto point = nb::cast<std::vector<double>>(value);
     if (point.size() != 3) bad_input("expected three numbers, not " + std::to_string(point.size()));
     for (std::size_t k = 0; k < 3; ++k) field[k] = point[k];
+}
+
+template <typename Field>
+const char* expectation() {
+    if (std::is_array_v<Field>) return "three numbers";
+    if (std::is_same_v<Field, bool>) return "true or false";
+    return std::is_same_v<Field, int> ? "a whole number" : "a number";
 }
 
 // The fields that a caller gave. Each that is known is taken out; what is left over at the end is unknown.
@@ -39,16 +47,16 @@ class Fields {
         try {
             set_field(field, rest_[name]);
         } catch (const nb::cast_error&) {
-            bad_input(std::string(name) + ": expected " + (std::is_array_v<Field> ? "three numbers" : "a number"));
+            bad_input(std::string(name) + ": expected " + expectation<Field>());
         }
         nb::del(rest_[name]);
     }
 
     // The C interface has an int where Python has a bool.
     void take_flag(const char* name, int& field) {
-        if (!rest_.contains(name)) return;
-        field = nb::cast<bool>(rest_[name]) ? 1 : 0;
-        nb::del(rest_[name]);
+        bool flag = field != 0;
+        take(name, flag);
+        field = flag ? 1 : 0;
     }
 
     void refuse_rest(const char* what) const {

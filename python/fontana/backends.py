@@ -1,12 +1,47 @@
-"""Which backends this machine has."""
+"""Which backends this machine has, and which neighbour schemes on them."""
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Sequence
+
 from fontana import _core
+from fontana.tables import parameters
 
 
-def absent_backends() -> dict[str, str]:
-    """The backends that have no device here, each with the reason, and what to do about it."""
-    found = _core.devices()
-    present = {device.backend for device in found if device.available}
-    return {device.backend: device.reason for device in found if device.backend not in present}
+def absent_backends(devices: Sequence[_core.Device]) -> dict[str, str]:
+    """The backends that have no device among these, each with the reason, and what to do about it."""
+    present = {device.backend for device in devices if device.available}
+    return {device.backend: device.reason for device in devices if device.backend not in present}
+
+
+def chosen_device(devices: Sequence[_core.Device], backend: str = "auto") -> _core.Device | None:
+    """The first of these that solver.backend=`backend` takes; None if it takes none."""
+    here = [device for device in devices if device.available]
+    if backend == "auto":
+        return next((device for device in here if device.is_gpu), None) or chosen_device(devices, "cpu")
+    return next((device for device in here if device.backend == backend), None)
+
+
+def absent_neighbors(device: _core.Device, method: str) -> dict[str, str]:
+    """The words of solver.neighbors that fluid.method=`method` cannot have on a device, each with the reason."""
+    reasons = {}
+    for word in parameters()["solver.neighbors"].choices:
+        if word not in device.neighbors:
+            reasons[word] = f"{device.backend} has {' and '.join(device.neighbors)}"
+        elif complaint := _complaint(word, method):
+            reasons[word] = complaint
+    return reasons
+
+
+@functools.cache
+def _complaint(neighbors: str, method: str) -> str:
+    """The library's about this scheme with this method, everything else as it is by default; "" if there is none."""
+    simulation = _core.Simulation()
+    simulation.set("solver.neighbors", neighbors)
+    simulation.set("fluid.method", method)
+    try:
+        simulation.check()
+    except _core.BadInput as error:
+        return str(error)
+    return ""

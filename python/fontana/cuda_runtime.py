@@ -7,13 +7,14 @@ itself cannot come in a wheel: it belongs to the GPU.
 
 from __future__ import annotations
 
-import ctypes
 import importlib.util
 import os
 import re
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+
+from fontana.system_libraries import has_library
 
 SYSTEM_LIBRARIES = ("libnvrtc.so.13", "libnvrtc.so.12", "libnvrtc.so.11.2", "libnvrtc.so")
 # nvidia-cuda-nvrtc-cu12 and -cu11 use the first folder, nvidia-cuda-nvrtc (CUDA 13 and later) one of the second kind.
@@ -23,7 +24,7 @@ WHEEL_LIBRARIES = ("cuda_nvrtc/lib/libnvrtc.so.*", "cu[0-9]*/lib/libnvrtc.so.*")
 def prepare() -> None:
     """Lets the solver find the NVRTC of a wheel if the system has none. What is set already stays."""
     if sys.platform == "linux":
-        os.environ.update(wheel_environment(_nvidia_folders(), os.environ, _has_system_library()))
+        os.environ.update(wheel_environment(_nvidia_folders(), os.environ, has_library(SYSTEM_LIBRARIES)))
 
 
 def wheel_environment(
@@ -48,13 +49,3 @@ def _version(path: Path) -> tuple[int, ...]:
 def _nvidia_folders() -> list[Path]:
     spec = importlib.util.find_spec("nvidia")
     return [Path(place) for place in spec.submodule_search_locations or []] if spec is not None else []
-
-
-def _has_system_library() -> bool:
-    for name in SYSTEM_LIBRARIES:
-        try:
-            ctypes.CDLL(name)
-        except OSError:
-            continue
-        return True
-    return False

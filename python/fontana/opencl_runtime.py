@@ -7,12 +7,13 @@ looks. `prepare` tells the solver where they are, through the environment of thi
 
 from __future__ import annotations
 
-import ctypes
 import importlib.util
 import os
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+
+from fontana.system_libraries import has_library
 
 SYSTEM_LOADERS = ("libOpenCL.so.1", "libOpenCL.so")
 SYSTEM_DRIVERS = Path("/etc/OpenCL/vendors")
@@ -26,7 +27,7 @@ def prepare() -> None:
         return
     folder = _pyopencl_folder()
     if folder is not None:
-        os.environ.update(wheel_environment(folder, os.environ, _has_system_loader(), _has_system_driver()))
+        os.environ.update(wheel_environment(folder, os.environ, has_library(SYSTEM_LOADERS), _has_system_driver()))
 
 
 def wheel_environment(
@@ -65,16 +66,6 @@ def _pyopencl_folder() -> Path | None:
 
 def _first_match(folder: Path, pattern: str) -> Path | None:
     return next(iter(sorted(folder.glob(pattern))), None)
-
-
-def _has_system_loader() -> bool:
-    for name in SYSTEM_LOADERS:
-        try:
-            ctypes.CDLL(name)
-        except OSError:
-            continue
-        return True
-    return False
 
 
 def _has_system_driver() -> bool:

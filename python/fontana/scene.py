@@ -106,6 +106,8 @@ def load_scene(source: str | os.PathLike | Mapping | Scene, overrides: Mapping[s
     try:
         return resolve(document, path.stem, overrides)
     except SceneError as error:
+        if overrides and _is_sound(document):
+            raise  # the overrides are to blame, and the file is no part of the sentence
         raise SceneError(f"{clean(str(path), 200)}: {error}") from error
 
 
@@ -113,6 +115,14 @@ def resolve(document: object, name: str, overrides: Mapping[str, object] | None 
     """A scene from a document that `fontana.reader` has read; `name` is for a scene that has none of its own."""
     values = resolve_document(apply_overrides(document, overrides or {}))
     return Scene(**{"name": _file_name(name)} | values)
+
+
+def _is_sound(document: object) -> bool:
+    try:
+        resolve(document, "scene")
+    except SceneError:
+        return False
+    return True
 
 
 def _override_scene(scene: Scene, overrides: Mapping[str, object]) -> Scene:
@@ -133,10 +143,11 @@ def find_scene(source: str | os.PathLike) -> Path:
     bundled = bundled_scenes()
     if text in bundled:
         return bundled[text]
-    if path.is_dir():
-        raise SceneError(f"{clean(text, 200)}: is a folder, not a scene file")
+    if text and path.is_dir():  # pathlib takes "" for the present folder
+        raise SceneError(f'"{clean(text, 200)}" is a folder, not a scene file')
     stem = path.stem if path.suffix == ".json" else text
-    raise SceneError(f"{clean(text, 200)}: no such file or bundled scene{suggestion(stem, bundled)}")
+    shown = clean(text, 200) or '""'
+    raise SceneError(f"{shown}: no such file or bundled scene{suggestion(stem, bundled)}")
 
 
 def bundled_scenes() -> dict[str, Path]:

@@ -187,7 +187,12 @@ class Simulation:
         return Frame(self._core, report, lambda: self._generation == generation)
 
     def frames(self, count: int | None = None) -> Iterator[Frame]:
-        """Simulates and yields `count` frames; without a count, those that the scene's output still asks for."""
+        """Simulates and yields `count` frames; without a count, those that the scene's output still asks for.
+
+        Raises BadInput, at the first of them, for a count below 0.
+        """
+        if count is not None and count < 0:
+            raise _core.BadInput(f"frames: expected a count of 0 or more, got {count}")
         remaining = self.scene.frame_count - self.frame if count is None else count
         for _ in range(remaining):
             yield self.step()

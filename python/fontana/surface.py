@@ -7,7 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fontana import _core
-from fontana.optional import require
+from fontana.optional import OptionalPackage
+
+_SPLASHSURF = OptionalPackage("pysplashsurf", "surface", "a surface")
+_SCIPY = OptionalPackage("scipy", "surface", "a surface")
 
 # Cells along an axis: above this the 64-bit numbers of a grid's points overflow.
 _MOST_CELLS = 2**20
@@ -46,8 +49,8 @@ class Mesh:
 
 def check_installed() -> None:
     """Raises BadInput with the line that installs what is missing."""
-    require("pysplashsurf", "pysplashsurf", "a surface")
-    require("scipy.sparse.csgraph", "scipy", "a surface")
+    _SPLASHSURF.module("pysplashsurf")
+    _SCIPY.module("scipy.sparse.csgraph")
 
 
 def reconstruct(position: np.ndarray, velocity: np.ndarray, radius: float, settings: SurfaceSettings) -> Mesh:
@@ -55,7 +58,7 @@ def reconstruct(position: np.ndarray, velocity: np.ndarray, radius: float, setti
 
     Raises BadInput where splashsurf is not installed or the settings do not fit.
     """
-    splashsurf = require("pysplashsurf", "pysplashsurf", "a surface")
+    splashsurf = _SPLASHSURF.module("pysplashsurf")
     if len(position) == 0:
         return _EMPTY
     # Around the middle of the fluid floats are finest, however far that is from the origin.
@@ -104,11 +107,11 @@ def _is_in_a_speck(vertices: np.ndarray, triangles: np.ndarray, size: float) -> 
     Smoothing shrinks small hollows inside the fluid to points of no area; the surface of a lone particle is twice its
     radius across.
     """
-    graph = require("scipy.sparse.csgraph", "scipy", "a surface")
-    from scipy.sparse import coo_array
-
+    graph = _SCIPY.module("scipy.sparse.csgraph")
     starts, ends = triangles[:, :2].ravel(), triangles[:, 1:].ravel()
-    edges = coo_array((np.ones(len(starts), dtype=bool), (starts, ends)), shape=(len(vertices), len(vertices)))
+    edges = _SCIPY.module("scipy.sparse").coo_array(
+        (np.ones(len(starts), dtype=bool), (starts, ends)), shape=(len(vertices), len(vertices))
+    )
     piece_count, piece = graph.connected_components(edges, directed=False)
     low, high = np.full((piece_count, 3), np.inf), np.full((piece_count, 3), -np.inf)
     np.minimum.at(low, piece, vertices)

@@ -69,7 +69,10 @@ def parse_quantity(text: str, unit: str) -> tuple[float, str]:
         raise UnitError("the number is too large")
     if not match[2]:
         return value, unit
-    given = _parse_unit(match[2])
+    try:
+        given = _parse_unit(match[2])
+    except UnitError as error:
+        raise UnitError(f"{error}: expected {expectation(unit)}") from error
     for target in (unit, KINEMATIC_VISCOSITY) if unit == "Pa*s" else (unit,):
         if _registry().get_dimensionality(given) == _registry().parse_units(target).dimensionality:
             return _convert(value, given, target), target

@@ -71,8 +71,9 @@ fontana::Simulation& simulation_of(fontana_simulation* handle) {
 
 // Devices as the interface shows them; the strings stay in `devices`.
 fontana_device view_of(const fontana::DeviceInfo& device) {
-    return {device.backend.c_str(), device.name.c_str(),   device.driver.c_str(),    device.memory_bytes,
-            device.compute_units,   device.is_gpu ? 1 : 0, device.available ? 1 : 0, device.reason.c_str()};
+    return {device.backend.c_str(),   device.name.c_str(),   device.driver.c_str(),
+            device.memory_bytes,      device.compute_units,  device.is_gpu ? 1 : 0,
+            device.available ? 1 : 0, device.reason.c_str(), device.neighbors.c_str()};
 }
 
 fontana_kernel_profile view_of(const fontana::ProfileRow& row) {

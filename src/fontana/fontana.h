@@ -28,7 +28,7 @@ extern "C" {
 #endif
 
 /* Raised when a struct or a function below changes its meaning. */
-#define FONTANA_ABI_VERSION 2
+#define FONTANA_ABI_VERSION 3
 
 typedef enum fontana_status {
     FONTANA_OK = 0,
@@ -225,7 +225,8 @@ typedef struct fontana_device {
     uint32_t compute_units;
     int is_gpu;
     int available;
-    const char* reason; /* why not, where not available; and what to do about it */
+    const char* reason;    /* why not, where not available; and what to do about it */
+    const char* neighbors; /* the words of solver.neighbors that it has, "grid|all-pairs" */
 } fontana_device;
 
 /* Asks every backend anew; the list stays valid until the next call on this thread. */

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fontana import _core
+from fontana.tables import parameters
 
 
 @pytest.fixture(params=["cuda", "opencl"])
@@ -93,5 +94,18 @@ def test_other_methods_are_refused(gpu, make_simulation, method):
 
 
 def test_the_cpu_is_refused(make_simulation):
-    with pytest.raises(_core.BadInput, match="choice of the backends for GPUs and the run is on cpu: use .*=grid"):
+    sentence = r"choice of the backends for GPUs and the run is on cpu, which has grid\|all-pairs: use .*=grid"
+    with pytest.raises(_core.BadInput, match=sentence):
         make_simulation("cpu", "tiles").device()
+
+
+def test_a_device_starts_with_the_schemes_that_it_lists_alone(backend, make_simulation):
+    listed = next(device.neighbors for device in _core.devices() if device.backend == backend and device.available)
+    assert "grid" in listed
+    for word in parameters()["solver.neighbors"].choices:
+        simulation = make_simulation(backend, word)
+        if word in listed:
+            assert simulation.device().neighbors == listed
+        else:
+            with pytest.raises(_core.BadInput, match=f"solver.neighbors={word} "):
+                simulation.device()

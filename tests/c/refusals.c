@@ -30,7 +30,10 @@ void test_tables(void) {
     const fontana_device* devices = NULL;
     size_t count = 0;
     OK(fontana_list_devices(&devices, &count));
-    for (size_t k = 0; k < count; ++k) CHECK(devices[k].available || strlen(devices[k].reason) > 0);
+    for (size_t k = 0; k < count; ++k) {
+        CHECK(devices[k].available || strlen(devices[k].reason) > 0);
+        CHECK(!devices[k].available || strstr(devices[k].neighbors, "grid"));
+    }
     CHECK(count > 0);
     BAD(fontana_list_devices(NULL, &count), "devices must not be null");
     BAD(fontana_list_devices(&devices, NULL), "count must not be null");

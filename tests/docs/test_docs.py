@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import fontana
-from fontana.cli import exit_codes
+from fontana import exit_codes
 from fontana.tables import COLLIDERS, EMITTERS, KEY_FIELDS, VIEW_FIELDS
 from fontana.validate import case_names
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -94,4 +95,4 @@ def test_an_empty_frame_is_an_empty_volume(fontana, empty: Path, bpy_folder: Pat
 
 def test_without_openvdb_a_sentence_says_what_to_install(fontana, splash: Path) -> None:
     line = error_line(fontana("export", splash, "-o", "v.vdb", code=2))
-    assert "openvdb, which is not here; pip install 'fontana[vdb]'" in line
+    assert f"openvdb, which is not here: {sys.executable} -m pip install 'fontana[vdb]'" in line

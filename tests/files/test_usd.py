@@ -6,6 +6,7 @@ import re
 import resource
 import signal
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -152,5 +153,6 @@ def test_what_cannot_be_is_one_sentence(fontana, splash: Path) -> None:
     line = error_line(fontana("export", splash, "-o", "/proc/s.usdc", code=6))
     assert line == 'fontana: cannot write "/proc/s.usdc": No such file or directory'
     blocked = {"PYTHONPATH": str(Path(__file__).parent / "without_usd")}
-    line = error_line(fontana("export", splash, "-o", "s.usdc", code=2, env=blocked))
-    assert "USD needs usd-core, which is not here: pip install usd-core" in line
+    done = fontana("export", splash, "-o", "s.usdc", code=2, env=blocked)
+    assert f"USD needs usd-core, which is not here: {sys.executable} -m pip install 'fontana[usd]'" in error_line(done)
+    assert done.stdout == ""

@@ -53,3 +53,15 @@ def test_the_c_example_runs(tmp_path):
     result = subprocess.run([program], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stdout + result.stderr
     assert list(tmp_path.rglob("*.bgeo")), "the example writes a .bgeo"
+
+
+def test_the_c_example_is_built_as_its_readme_says(tmp_path, native_build):
+    """Its lines, with another folder in place of out/."""
+    native_build("dam_break")
+    lines = (ROOT / "examples" / "c" / "README.md").read_text(encoding="utf-8").split("```")[1]
+    script = lines.replace("$PWD/out/c", str(tmp_path / "installed")).replace("out/dam_break", f"{tmp_path}/dam_break")
+    script = script.replace("dam_break out\n", f"dam_break {tmp_path}\n")
+    done = subprocess.run(["sh", "-e", "-c", script], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr
+    assert len(list(tmp_path.glob("dam_break.*.bgeo"))) == 12
+    assert (tmp_path / "installed" / "include" / "fontana.h").exists()

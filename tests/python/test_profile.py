@@ -117,7 +117,7 @@ def _no_memory(simulation: object, size: int) -> float:
 
 
 def test_an_unknown_gpu_is_refused(fontana, drop_file: Path) -> None:
-    assert "'Voodoo2' is not one of 'h100'" in fontana("run", drop_file, "--roofline", "Voodoo2", code=2).stderr
+    assert '"Voodoo2" is not one of H100, A100' in fontana("run", drop_file, "--roofline", "Voodoo2", code=2).stderr
 
 
 def test_the_peaks_of_gpus_have_a_source() -> None:

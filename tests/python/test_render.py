@@ -138,6 +138,14 @@ def test_a_name_that_is_too_long_is_a_sentence(fontana, drop_cache):
     assert line.endswith("File name too long")
 
 
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="/proc is the folder that even root cannot write to")
+def test_a_folder_that_cannot_be_written_is_refused_before_a_picture_is_drawn(fontana, drop_cache):
+    for name in ("x.gif", "x.####.png"):
+        done = fontana("render", drop_cache, "-o", f"/proc/{name}", *SMALL, code=6)
+        assert error_line(done).startswith('fontana: cannot write to "/proc"')
+        assert done.stdout == ""
+
+
 def test_a_folder_without_a_run_is_refused(fontana, tmp_path):
     (tmp_path / "empty").mkdir()
     assert "it is not the folder of a run" in error_line(fontana("render", "empty", "-o", "x.gif", code=2))
@@ -157,7 +165,9 @@ def test_without_a_display_it_works(fontana, drop_cache):
 
 def test_without_moderngl_there_is_a_sentence(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "moderngl", None)
-    with pytest.raises(package.DeviceUnavailable, match=r"pip install 'fontana\[view\]'"):
+    with pytest.raises(
+        package.BadInput, match=r"a picture needs moderngl, which is not here: .* -m pip install 'fontana\[view\]'"
+    ):
         create_headless_context()
 
 

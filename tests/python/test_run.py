@@ -6,9 +6,11 @@ import contextlib
 import json
 import os
 import pty
+import re
 import resource
 import signal
 import subprocess
+import termios
 import time
 from pathlib import Path
 
@@ -18,7 +20,8 @@ from command_line import error_line, fontana_command
 import fontana as package
 from fontana.runs import stop
 from fontana.runs.reporters import Reporter
-from fontana.runs.runner import RunOptions, StoppedError, run_scene
+from fontana.runs.runner import RunOptions, run_scene
+from fontana.runs.stop import StoppedError
 from fontana.scene import load_scene
 
 
@@ -75,10 +78,14 @@ def test_json_lines_tell_each_frame(fontana, drop_file: Path) -> None:
     assert events[3]["frame"] == 3
 
 
-def test_a_terminal_gets_a_bar(drop_file: Path, tmp_path: Path) -> None:
+def show_on_terminal(drop_file: Path, folder: Path, columns: int) -> str:
+    """What `fontana run` writes to a terminal of so many columns."""
     master, slave = pty.openpty()
+    termios.tcsetwinsize(slave, (24, columns))
     command = fontana_command("run", drop_file, "--no-picture")
-    with subprocess.Popen(command, cwd=tmp_path, stdout=slave, stderr=slave, close_fds=True) as process:
+    # readline, where something imported it, tells child processes its own COLUMNS; os.environ does not have them.
+    ends = {"stdin": slave, "stdout": slave, "stderr": slave, "env": dict(os.environ)}
+    with subprocess.Popen(command, cwd=folder, close_fds=True, **ends) as process:
         os.close(slave)
         shown = b""
         with contextlib.suppress(OSError):  # how Linux says that the other end is closed
@@ -86,8 +93,19 @@ def test_a_terminal_gets_a_bar(drop_file: Path, tmp_path: Path) -> None:
                 shown += part
         os.close(master)
     assert process.returncode == 0
+    return shown.decode()
+
+
+def test_a_terminal_gets_a_bar(drop_file: Path, tmp_path: Path) -> None:
+    shown = show_on_terminal(drop_file, tmp_path, columns=120)
     for word in ("frame 6/6", "\u2501\u2501", "216 particles", "done: 6 frames"):
-        assert word in shown.decode()
+        assert word in shown
+
+
+def test_a_narrow_terminal_gets_the_whole_of_a_frame(drop_file: Path, tmp_path: Path) -> None:
+    shown = show_on_terminal(drop_file, tmp_path, columns=60)
+    words = " ".join(re.sub(r"\x1b\[[\d;?]*[a-zA-Z]", "", shown).split())
+    assert re.search(r"density \+[\d.]+% \(max [\d.]+%\) in [\d.]+ iterations", words)
 
 
 def test_two_runs_give_the_same_bytes(fontana, whole, drop_file: Path, tmp_path: Path) -> None:
@@ -105,6 +123,17 @@ def test_the_same_command_continues_and_resume_adds_frames(fontana, whole, drop_
     fontana("resume", out, "--frames", 6)
     assert frames_of(out) == whole
     assert "all 6 frames are there" in fontana("resume", out, "--frames", 6).stdout
+
+
+@pytest.mark.parametrize("again", [(), ("--restart",)])
+def test_a_device_that_refuses_leaves_the_frames_alone(fontana, whole, drop_file: Path, tmp_path: Path, again) -> None:
+    out = tmp_path / "kept"
+    common = ("run", drop_file, "--out", out, "--no-picture")
+    fontana(*common)
+    absent = {"FONTANA_OPENCL_LIBRARY": "/nowhere/libOpenCL.so"}
+    done = fontana(*common, "--backend", "opencl", *again, env=absent, code=5)
+    assert "/nowhere/libOpenCL.so" in error_line(done) and done.stdout == ""
+    assert frames_of(out) == whole
 
 
 def test_resume_goes_on_without_the_scene_file(fontana, whole, drop_file: Path, tmp_path: Path) -> None:
@@ -302,7 +331,7 @@ def test_a_signal_saves_and_the_same_command_continues(
     _, stderr = process.communicate(timeout=60)
     assert process.returncode == code
     assert "stopping after this frame" in stderr
-    assert "stopped after frame" in stderr
+    assert re.search(r"stopped after frame \d+ of \d+; fontana resume \S+ goes on", stderr)
     done = len(frames_of(out))
     assert manifest_of(out)["state"] == "interrupted"
     assert len(manifest_of(out)["frames"]) == done >= 3

@@ -108,6 +108,8 @@ def test_files_that_cannot_be_scenes(tmp_path: Path) -> None:
         load_scene(tmp_path)
     with pytest.raises(fontana.SceneError, match="did you mean fountain"):
         load_scene("fountian")
+    with pytest.raises(fontana.SceneError, match='"": no such file or bundled scene; known are'):
+        load_scene("")
 
 
 def test_units_become_si() -> None:

@@ -136,6 +136,30 @@ def test_frames_without_a_count_are_those_of_the_scene(drop: dict) -> None:
     assert sum(1 for _ in simulation.frames()) == 5
 
 
+def test_a_count_of_frames_below_nothing_is_refused(drop: dict) -> None:
+    with pytest.raises(fontana.BadInput, match="expected a count of 0 or more, got -1"):
+        list(fontana.Simulation(drop).frames(-1))
+
+
+@pytest.mark.parametrize(
+    ("field", "expected"),
+    [
+        ({"flip": "yes"}, "flip: expected true or false"),
+        ({"enabled": None}, "enabled: expected true or false"),
+        ({"radius": "wide"}, "radius: expected a number"),
+        ({"centre": 3}, "centre: expected three numbers"),
+    ],
+)
+def test_fields_of_the_wrong_type_are_refused(field: dict, expected: str) -> None:
+    with pytest.raises(fontana.BadInput, match=expected):
+        fontana.Simulation().core.add_collider("plane_y", **field)
+
+
+def test_a_frame_number_that_is_not_whole_is_refused() -> None:
+    with pytest.raises(fontana.BadInput, match="first_frame: expected a whole number"):
+        fontana.Simulation().core.add_emitter("sphere", radius=1.0, first_frame=2.5)
+
+
 def test_errors_of_the_progress_function_come_through(drop: dict) -> None:
     def fail(fraction: float) -> bool:
         raise ZeroDivisionError("on purpose")

@@ -63,4 +63,4 @@ def test_what_is_not_a_unit_is_not_evaluated(unit: str) -> None:
     """pint itself would compute 9**9**9 for ever."""
     with pytest.raises(UnitError) as error:
         parse_quantity(f"5 {unit}", "m")
-    assert str(error.value) == f'"{unit}" is not a unit'
+    assert str(error.value).startswith(f'"{unit}" is not a unit: expected a number in m, or text with a unit such as')

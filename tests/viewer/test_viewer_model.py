@@ -10,6 +10,7 @@ import pytest
 from small_scenes import DROP
 
 from fontana import _core
+from fontana.backends import chosen_device
 from fontana.gl.camera import Camera
 from fontana.scene import load_scene
 from fontana.tables import parameters
@@ -64,13 +65,32 @@ def test_a_refused_value_becomes_a_message(model):
     assert "elasticity" in model.messages.current()[1].text
 
 
-def test_a_key_goes_round_the_schemes(model):
+def neighbors_by_key(model, backend, method):
+    """The schemes that N steps through until it is back where it began."""
+    for path, word in (("solver.backend", backend), ("fluid.method", method), ("solver.neighbors", "grid")):
+        model.set(path, word)
     seen = []
-    for _ in parameters()["solver.neighbors"].choices:
+    while not seen or seen[-1] != "grid":
         model.next_neighbors()
         seen.append(model.source.settings.get("solver.neighbors"))
-    assert sorted(seen) == sorted(parameters()["solver.neighbors"].choices)
-    assert seen[-1] == "grid"
+    return seen
+
+
+def test_a_key_goes_round_the_schemes(model, opencl_device):
+    assert neighbors_by_key(model, "cpu", "mueller") == ["all-pairs", "grid"]
+    assert model.absent_choices("solver.neighbors") == {"tiles": "cpu has grid and all-pairs"}
+    assert neighbors_by_key(model, "opencl", "mueller") == ["tiles", "all-pairs", "grid"]
+    assert model.absent_choices("solver.neighbors") == {}
+    assert neighbors_by_key(model, "opencl", "dfsph") == ["all-pairs", "grid"]
+    assert "choice of fluid.method=mueller" in model.absent_choices("solver.neighbors")["tiles"]
+    chosen = chosen_device(_core.devices())
+    assert ("tiles" in neighbors_by_key(model, "auto", "mueller")) == ("tiles" in chosen.neighbors)
+
+
+def test_a_key_leaves_a_scheme_that_is_not_here(model):
+    model.source.settings.set("solver.neighbors", "tiles")  # as a scene may say
+    model.next_neighbors()
+    assert model.source.settings.get("solver.neighbors") == "all-pairs"
 
 
 def test_a_key_goes_round_the_backends_that_are_here(model):

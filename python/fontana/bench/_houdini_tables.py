@@ -12,7 +12,7 @@ from fontana.bench._schemes import (
     THESIS_SECONDS,
     gpu_remark,
 )
-from fontana.bench._tables import failures
+from fontana.bench._tables import shortfalls
 from fontana.bench._text import print_table, short_number
 from fontana.runs.text import clock as clock_text
 
@@ -71,7 +71,6 @@ def _remarks(results: dict) -> list[str]:
         "brackets; at the end both had the same bytes",
         "processor time is that of all threads, which other programs disturb less",
         f"in brackets beside the seconds: the thesis's ({THESIS_HARDWARE}), of a run whose length it does not give",
-        "a scheme is cut off where five pairs of frames would take longer than the budget",
         f"CPU: {machine['cpu']}, {threads} thread{'s' * (threads != 1)}; {machine['os']}",
     ]
     if results["overhead_percent_100k"] is not None:
@@ -81,7 +80,4 @@ def _remarks(results: dict) -> list[str]:
             "processor time"
         )
     lines += [remark for remark in (gpu_remark(results), load_remark(results)) if remark]
-    lines += [f"failed: {reason}" for reason in failures(results)]
-    if results["state"] == "interrupted":
-        lines.append("interrupted: these are the numbers until then")
-    return lines
+    return lines + shortfalls(results)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
 from fontana import _core
@@ -49,4 +51,15 @@ def budget_option(default: float, more_than: str):
         show_default=True,
         metavar="SECONDS",
         help=f"For each number; a scheme that would need more for {more_than} is cut off.",
+    )
+
+
+def out_option(name: str):
+    """`name`: of the file of results in that folder."""
+    return click.option(
+        "--out",
+        type=click.Path(path_type=Path, file_okay=False),
+        default=Path("out/bench"),
+        show_default=True,
+        help=f"Folder of {name} and its picture, {Path(name).with_suffix('.png')}.",
     )

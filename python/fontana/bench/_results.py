@@ -9,6 +9,7 @@ from jsonschema import Draft202012Validator
 
 from fontana import _core
 from fontana.errors import clean
+from fontana.output_folder import make_output_folder
 from fontana.reader import read_json
 
 _STATISTICS = {"type": "object", "required": ["median", "minimum", "maximum", "repeats"]}
@@ -65,10 +66,7 @@ _SCHEMA = {
 
 def publish_json(path: Path, results: dict) -> None:
     """Writes the results, in one step. Raises IoError."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise _core.IoError(f'the folder "{path.parent}" cannot be made: {error.strerror}') from error
+    make_output_folder(path.parent)
     _core.publish_file(str(path), (json.dumps(results, indent=1, allow_nan=False) + "\n").encode())
 
 

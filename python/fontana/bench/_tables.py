@@ -45,7 +45,7 @@ def progress_text(cell: dict) -> str:
     """The same for a line of its own."""
     if cell["state"] == "measured":
         return f"{cell_text(cell)} frames per second"
-    return f"{cell_text(cell)}: {cell['reason']}" if "reason" in cell else cell_text(cell)
+    return f"{cell['state']}: {cell['reason']}" if "reason" in cell else cell_text(cell)
 
 
 def _work_text(cell: dict) -> str:
@@ -71,14 +71,19 @@ def remarks(results: dict) -> list[str]:
     used = next((device for device in results["devices"] if device["backend"] == "opencl" and device["is_gpu"]), None)
     if used:
         lines.append(f"GPU: {used['name']}, {used['driver']}")
-    for reason in failures(results):
-        lines.append(f"failed: {reason}")
+    return lines + shortfalls(results)
+
+
+def shortfalls(results: dict) -> list[str]:
+    """Which numbers were cut off, what went wrong (each sentence once), and whether the run was stopped."""
+    lines = []
+    for name, rows in results["scenes"].items():
+        for row in rows:
+            for scheme, cell in row["cells"].items():
+                if cell["state"] == "cut off" and "reason" in cell:
+                    lines.append(f"cut off: {name}, {row['particles']:,} particles, {scheme}: {cell['reason']}")
+                if cell["state"] == "failed":
+                    lines.append(f"failed: {cell['reason']}")
     if results["state"] == "interrupted":
         lines.append("interrupted: these are the numbers until then")
-    return lines
-
-
-def failures(results: dict) -> list[str]:
-    """What went wrong in cells, each sentence once."""
-    cells = [cell for rows in results["scenes"].values() for row in rows for cell in row["cells"].values()]
-    return list(dict.fromkeys(cell["reason"] for cell in cells if cell["state"] == "failed"))
+    return list(dict.fromkeys(lines))

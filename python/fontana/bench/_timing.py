@@ -7,6 +7,7 @@ import time
 from dataclasses import dataclass
 
 from fontana import _core
+from fontana.runs.text import clock
 
 SUBSTEPS_PER_FRAME = 10  # the thesis's frame
 WARM_UP_SUBSTEPS = 10
@@ -62,6 +63,13 @@ def _step(simulation: _core.Simulation, dt: float, neighbors: str, substeps: int
     begin = time.perf_counter()
     simulation.step_frame()
     return time.perf_counter() - begin
+
+
+def beyond_budget(expected: float, budget: float, work: str) -> str:
+    """Why a number is cut off; "" where the work, of `expected` seconds, is within the budget."""
+    if expected <= budget:
+        return ""
+    return f"{work} would take about {clock(expected)}, by a smaller run; the budget of a number is {budget:g} s"
 
 
 def statistics(values: list[float]) -> dict[str, float]:

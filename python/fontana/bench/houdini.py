@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from statistics import quantiles
@@ -12,13 +11,15 @@ import click
 from fontana import _core
 from fontana.bench._cook import build_driver, run_driver
 from fontana.bench._houdini_tables import print_results, progress_text
-from fontana.bench._machine import describe_conditions, missing_backends, note_end
-from fontana.bench._options import budget_option, counts_option, scenes_option, threads_option
-from fontana.bench._results import publish_json, publish_picture
-from fontana.bench._scenes import SPACING, bench_scene
+from fontana.bench._machine import missing_backends
+from fontana.bench._options import budget_option, counts_option, out_option, scenes_option, threads_option
+from fontana.bench._results import publish_json
+from fontana.bench._scenes import bench_scene
 from fontana.bench._schemes import SCHEMES, Scheme
-from fontana.bench._timing import SUBSTEPS_PER_FRAME, significant, statistics
+from fontana.bench._tables_run import describe_results, measure_and_publish
+from fontana.bench._timing import beyond_budget, significant, statistics
 
+RESULTS_NAME = "houdini.json"
 WARM_UP_FRAMES = 2
 LEAST_PAIRS, MOST_PAIRS = 5, 30
 GOAL_COUNT = 100_000
@@ -26,19 +27,12 @@ _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
 
 
 @click.command(short_help="The solver node beside the library: the thesis's tables of Houdini anew.")
-@click.option(
-    "--json",
-    "path",
-    type=click.Path(path_type=Path, dir_okay=False),
-    default=Path("out/bench/houdini.json"),
-    show_default=True,
-    help="File of the results; their picture, a .png, is beside it.",
-)
+@out_option(RESULTS_NAME)
 @counts_option
 @budget_option(20.0, "five pairs of frames")
 @scenes_option
 @threads_option
-def command(path: Path, counts: list[int], budget: float, scene_names: list[str], threads: int) -> None:
+def command(out: Path, counts: list[int], budget: float, scene_names: list[str], threads: int) -> None:
     """Time the solver node's cook beside the same frames through the library: Tables 3 and 4, Figs. 17 and 18.
 
     The node is compiled against a double of the HDK and cooks in it: points in, ten substeps, points out. Frames of
@@ -47,44 +41,20 @@ def command(path: Path, counts: list[int], budget: float, scene_names: list[str]
     \b
     Examples:
       fontana bench houdini
-      fontana bench houdini --counts 100000 --scenes box --budget 90 --json houdini.json
+      fontana bench houdini --counts 100000 --scenes box --budget 90 --out out/goal
       fontana bench plot out/bench/houdini.json
     """
-    picture = path.with_suffix(".png")
-    if picture == path:
-        raise _core.BadInput(f"--json: {path} is the name of the picture; expected another ending, such as .json")
-    results = describe_results(counts, budget, scene_names, threads)
+    path = out / RESULTS_NAME
+    settings = {"counts": counts, "budget_seconds": budget, "threads": threads}
+    settings |= {"warm_up_frames": WARM_UP_FRAMES, "most_pairs": MOST_PAIRS}
+    results = describe_results("houdini", scene_names, **settings)
+    results |= {"overhead_percent_100k": None, "overhead_processor_percent_100k": None}
     publish_json(path, results)  # a folder that cannot be written is found now, not in the end
     click.echo("building the node against the double of the HDK ...", err=True)
     driver = build_driver(Path.cwd())
-    try:
-        measure_all(results, driver, missing_backends(), lambda: publish_json(path, results))
-        note_end(results)
-    except KeyboardInterrupt:
-        note_end(results, "interrupted")
-    publish_json(path, results)
-    print_results(results)
-    publish_picture(results, picture)
-    click.echo(f"written: {path}, {picture}")
-    if results["state"] == "interrupted":
-        raise KeyboardInterrupt
-
-
-def describe_results(counts: list[int], budget: float, scene_names: list[str], threads: int) -> dict:
-    """The results before the first number: conditions and settings."""
-    conditions = describe_conditions(["fontana", *sys.argv[1:]])
-    settings = {
-        "counts": counts,
-        "budget_seconds": budget,
-        "threads": threads,
-        "particle_spacing": SPACING,
-        "substeps_per_frame": SUBSTEPS_PER_FRAME,
-        "warm_up_frames": WARM_UP_FRAMES,
-        "most_pairs": MOST_PAIRS,
-    }
-    scenes: dict[str, list] = {name: [] for name in scene_names}
-    goal = {"overhead_percent_100k": None, "overhead_processor_percent_100k": None}
-    return {"benchmark": "houdini", "state": "running"} | goal | conditions | {"settings": settings, "scenes": scenes}
+    measure_and_publish(
+        results, path, lambda publish: measure_all(results, driver, missing_backends(), publish), print_results
+    )
 
 
 def measure_all(results: dict, driver: tuple[Path, Path], missing: dict[str, str], publish: Callable[[], None]) -> None:
@@ -122,8 +92,8 @@ def _cell(
     budget, threads, count = settings["budget_seconds"], settings["threads"], rows[-1]["particles"]
     try:
         expected = _predict(scheme, name, rows, driver, settings)
-        if 2.0 * LEAST_PAIRS * expected > budget:
-            return {"state": "cut off", "predicted_frame_seconds": significant(expected)}
+        if reason := beyond_budget(2.0 * LEAST_PAIRS * expected, budget, f"{LEAST_PAIRS} pairs of frames"):
+            return {"state": "cut off", "reason": reason, "predicted_frame_seconds": significant(expected)}
         heard = _ask(scheme, name, count, driver, (WARM_UP_FRAMES, MOST_PAIRS, budget), threads)
     except _core.FontanaError as error:
         return {"state": "failed", "reason": str(error)}

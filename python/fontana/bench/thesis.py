@@ -2,33 +2,27 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import click
 
 from fontana import _core
-from fontana.bench._machine import describe_conditions, missing_backends, note_end
-from fontana.bench._options import budget_option, counts_option, scenes_option, threads_option
-from fontana.bench._results import publish_json, publish_picture
-from fontana.bench._scenes import SPACING, bench_scene
+from fontana.bench._machine import missing_backends
+from fontana.bench._options import budget_option, counts_option, out_option, scenes_option, threads_option
+from fontana.bench._results import publish_json
+from fontana.bench._scenes import bench_scene
 from fontana.bench._schemes import REFERENCE, SCHEMES, Scheme
 from fontana.bench._tables import print_results, progress_text
-from fontana.bench._timing import SUBSTEPS_PER_FRAME, WARM_UP_SUBSTEPS, clock_substeps, significant
+from fontana.bench._tables_run import describe_results, measure_and_publish
+from fontana.bench._timing import WARM_UP_SUBSTEPS, beyond_budget, clock_substeps, significant
 
 RESULTS_NAME = "thesis.json"
 _PROBE_COUNT = 1000  # where a scheme's cost is asked for before the first row
 
 
 @click.command(short_help="Four schemes in two scenes: the thesis's tables anew.")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=Path("out/bench"),
-    show_default=True,
-    help="Folder of thesis.json and thesis.png.",
-)
+@out_option(RESULTS_NAME)
 @counts_option
 @budget_option(5.0, "one substep")
 @scenes_option
@@ -47,34 +41,10 @@ def command(out: Path, counts: list[int], budget: float, scene_names: list[str],
       fontana bench plot out/bench/thesis.json
     """
     path = out / RESULTS_NAME
-    results = describe_results(counts, budget, scene_names, threads)
+    settings = {"counts": counts, "budget_seconds": budget, "threads": threads, "warm_up_substeps": WARM_UP_SUBSTEPS}
+    results = describe_results("thesis", scene_names, **settings)
     publish_json(path, results)  # a folder that cannot be written is found now, not in the end
-    try:
-        measure_all(results, missing_backends(), lambda: publish_json(path, results))
-        note_end(results)
-    except KeyboardInterrupt:
-        note_end(results, "interrupted")
-    publish_json(path, results)
-    print_results(results)
-    publish_picture(results, path.with_suffix(".png"))
-    click.echo(f"written: {path}, {path.with_suffix('.png')}")
-    if results["state"] == "interrupted":
-        raise KeyboardInterrupt
-
-
-def describe_results(counts: list[int], budget: float, scene_names: list[str], threads: int) -> dict:
-    """The results before the first number: conditions and settings."""
-    conditions = describe_conditions(["fontana", *sys.argv[1:]])
-    settings = {
-        "counts": counts,
-        "budget_seconds": budget,
-        "threads": threads,
-        "particle_spacing": SPACING,
-        "substeps_per_frame": SUBSTEPS_PER_FRAME,
-        "warm_up_substeps": WARM_UP_SUBSTEPS,
-    }
-    scenes: dict[str, list] = {name: [] for name in scene_names}
-    return {"benchmark": "thesis", "state": "running", **conditions, "settings": settings, "scenes": scenes}
+    measure_and_publish(results, path, lambda publish: measure_all(results, missing_backends(), publish), print_results)
 
 
 def measure_all(results: dict, missing: dict[str, str], publish: Callable[[], None]) -> None:
@@ -98,8 +68,8 @@ def _cell(scheme: Scheme, scene: object, rows: list[dict], missing: dict[str, st
     budget, threads = settings["budget_seconds"], settings["threads"]
     try:
         expected = _predict(scheme, scene, rows, budget, threads)
-        if expected > budget:
-            cell = {"state": "cut off", "predicted_substep_seconds": significant(expected)}
+        if reason := beyond_budget(expected, budget, "one substep"):
+            cell = {"state": "cut off", "reason": reason, "predicted_substep_seconds": significant(expected)}
         else:
             simulation, dt = scene.build(scheme.backend, threads)
             clocked = clock_substeps(simulation, dt, scheme.neighbors, budget)

@@ -68,7 +68,7 @@ def _surface_options(function):
     return function
 
 
-@click.command()
+@click.command(short_help="Make the surface of the fluid of a run.")
 @_folder
 @_frames
 @click.option(
@@ -125,7 +125,7 @@ def mesh(
         progress.close()
 
 
-@click.command()
+@click.command(short_help="Write the particles of a run for other programs.")
 @_folder
 @_frames
 @click.option("-o", "--out", metavar="NAME", required=True, help="Ends in .usdc, .usda, .usd, .abc or .vdb.")

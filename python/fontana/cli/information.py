@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from fontana import _core
+from fontana.backends import chosen_device
 from fontana.errors import SceneError, clean
 from fontana.fluid_table import fluids as fluid_table
 from fontana.reader import read_json
@@ -38,7 +39,7 @@ def print_table(columns: list[str], rows: list[list[str]]) -> None:
     click.echo("\n".join(line.rstrip() for line in lines.get().splitlines()))
 
 
-@click.command()
+@click.command(short_help="What can compute here, and what cannot and why.")
 @_as_json
 def devices(as_json: bool) -> None:
     """List what can compute here, and what cannot and why.
@@ -50,12 +51,12 @@ def devices(as_json: bool) -> None:
     """
     found = _core.devices()
     if as_json:
-        names = ("backend", "name", "driver", "memory_bytes", "compute_units", "is_gpu", "available", "reason")
+        names = ("backend", "name", "driver", "memory_bytes", "compute_units", "is_gpu", "neighbors")
+        names += ("available", "reason")
         click.echo(json.dumps([{name: getattr(device, name) for name in names} for device in found], indent=1))
         return
-    here = [device for device in found if device.available]
     print_table(
-        ["backend", "device", "kind", "units", "memory", "driver"],
+        ["backend", "device", "kind", "units", "memory", "neighbours", "driver"],
         [
             [
                 device.backend,
@@ -63,16 +64,17 @@ def devices(as_json: bool) -> None:
                 "GPU" if device.is_gpu else "CPU",
                 str(device.compute_units),
                 data_size(device.memory_bytes),
+                ", ".join(device.neighbors),
                 device.driver,
             ]
-            for device in here
+            for device in found
+            if device.available
         ],
     )
     for device in found:
         if not device.available:
             click.echo(f"not available: {device.backend}{f' ({device.name})' if device.name else ''}: {device.reason}")
-    chosen = next((device for device in here if device.is_gpu), None) or next(iter(here), None)
-    if chosen:
+    if chosen := chosen_device(found):
         why = "the first GPU" if chosen.is_gpu else "there is no GPU"
         click.echo(f"--backend auto takes {chosen.backend} ({chosen.name}): {why}")
 
@@ -111,7 +113,7 @@ def schema() -> None:
     click.echo(json.dumps(scene_schema(), indent=2))
 
 
-@click.command()
+@click.command(short_help="What a parameter, an emitter or a collider means.")
 @click.argument("name", required=False)
 def explain(name: str | None) -> None:
     """Say what a parameter, an emitter or a collider means; without NAME, list them.
@@ -190,7 +192,7 @@ def _explain_fields(name: str, fields: tuple) -> None:
     print_table(["  field", "unit", "range", "what it is"], rows)
 
 
-@click.command()
+@click.command(short_help="The named fluids and their measured values.")
 @click.argument("name", required=False)
 @_as_json
 def fluids(name: str | None, as_json: bool) -> None:

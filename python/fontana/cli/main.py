@@ -9,13 +9,13 @@ import traceback
 
 import click
 
-from fontana import _core
-from fontana.cli import exit_codes
+from fontana import _core, exit_codes
 from fontana.cli.bench import bench
 from fontana.cli.files import export, mesh
 from fontana.cli.information import devices, explain, fluids, scenes, schema
 from fontana.cli.render import render
 from fontana.cli.run import resume, run
+from fontana.cli.usage import usage_sentence
 from fontana.cli.validate import validate
 from fontana.cli.verify import verify
 from fontana.cli.view import view
@@ -50,9 +50,11 @@ def main() -> None:
     """Runs the command line and leaves with the exit code."""
     try:
         code = cli.main(prog_name="fontana", standalone_mode=False) or exit_codes.OK
-    except click.ClickException as error:
+    except click.exceptions.NoArgsIsHelpError as error:
         error.show()
         code = exit_codes.BAD_INPUT
+    except click.ClickException as error:
+        code = _say(exit_codes.BAD_INPUT, usage_sentence(error))
     except click.exceptions.Exit as error:
         code = error.exit_code
     except BrokenPipeError:  # `fontana schema | head`
@@ -68,7 +70,10 @@ def _report(error: BaseException) -> int:
         error = KeyboardInterrupt()
     if os.environ.get("FONTANA_DEBUG"):
         traceback.print_exception(error)
-    code, text = exit_codes.exit_code(error), exit_codes.sentence(error)
+    return _say(exit_codes.exit_code(error), exit_codes.sentence(error))
+
+
+def _say(code: int, text: str) -> int:
     if "--json" in sys.argv:
         print(json.dumps({"event": "error", "code": code, "message": text}), flush=True)
     print(f"fontana: {text}", file=sys.stderr)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from fontana.cli.usage import Choice
 from fontana.gl.camera import Camera
 from fontana.gl.footage import Footage
 from fontana.gl.frame_data import COLOR_MAPS, COLOR_UNITS, STYLES, Look
@@ -19,12 +20,12 @@ from fontana.runs.progress import make_progress
 _LOOK = Look()
 
 
-@click.command()
+@click.command(short_help="Draw the frames of a run as pictures or a film.")
 @click.argument("folder", type=click.Path(path_type=Path))
 @click.option(
     "-o", "--out", "out", type=click.Path(path_type=Path), required=True, help="x.mp4, .gif, .webp, x.####.png"
 )
-@click.option("--style", type=click.Choice(STYLES), default=_LOOK.style, show_default=True, help="How it is drawn.")
+@click.option("--style", type=Choice(STYLES), default=_LOOK.style, show_default=True, help="How it is drawn.")
 @click.option("--frames", "frame_text", metavar="RANGE", help=FRAMES_HELP)
 @click.option("--size", "size_text", default="1280x720", show_default=True, metavar="WxH", help="In pixels.")
 @click.option(
@@ -42,9 +43,9 @@ _LOOK = Look()
     help="Share of a frame that water is exposed for; points are sharp.",
 )
 @click.option("--camera", "camera_text", default="", metavar="TEXT", help="Where it is. [default: the scene's view]")
-@click.option("--color-by", type=click.Choice(tuple(COLOR_UNITS)), default=_LOOK.color_by, show_default=True)
+@click.option("--color-by", type=Choice(tuple(COLOR_UNITS)), default=_LOOK.color_by, show_default=True)
 @click.option("--color-range", "range_text", metavar="LOW,HIGH", help="Values at the ends. [default: those of the run]")
-@click.option("--color-map", type=click.Choice(COLOR_MAPS), default=_LOOK.color_map, show_default=True)
+@click.option("--color-map", type=Choice(COLOR_MAPS), default=_LOOK.color_map, show_default=True)
 @click.option("--legend/--no-legend", default=True, help="Say what the colours of points mean.")
 @click.option("--fps", type=click.FloatRange(0.1, 1000), help="Of a film. [default: the run's]")
 @click.option("--restart", is_flag=True, help="Draw pictures again that are there, and replace foreign ones.")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from fontana import _core
+from fontana.cli.usage import Choice
 from fontana.formats import FORMATS
 from fontana.overrides import parse_assignment
 from fontana.roofline import gpus
@@ -25,7 +25,7 @@ _OUTPUT_OPTIONS = (
     click.option("--quiet", is_flag=True, help="Say nothing but errors."),
 )
 _WHERE_OPTIONS = (
-    click.option("--backend", type=click.Choice(parameters()["solver.backend"].choices), help="Where to compute."),
+    click.option("--backend", type=Choice(parameters()["solver.backend"].choices), help="Where to compute."),
     click.option("--threads", type=click.IntRange(0), help="Threads of the cpu backend; 0: all cores."),
     click.option("--frames", type=click.IntRange(1), help="Frames to have in the end. [default: the scene's]"),
 )
@@ -46,18 +46,16 @@ def _kept_settings(assignments: tuple[str, ...]) -> list[str]:
     return [word for text in kept for word in ("--set", text)]
 
 
-@click.command()
+@click.command(short_help="Simulate a scene into a folder.")
 @click.argument("scene")
 @_with(_WHERE_OPTIONS)
-@click.option(
-    "--neighbors", type=click.Choice(parameters()["solver.neighbors"].choices), help="How neighbours are found."
-)
+@click.option("--neighbors", type=Choice(parameters()["solver.neighbors"].choices), help="How neighbours are found.")
 @click.option("--out", type=click.Path(path_type=Path), help="Folder of the frames. [default: out/NAME]")
 @click.option(
     "--set", "assignments", multiple=True, metavar="PATH=VALUE", help="Change a value of the scene; repeatable."
 )
 @click.option(
-    "--format", "formats", multiple=True, type=click.Choice(FORMATS), help="Of the frames; repeatable. [default: bgeo]"
+    "--format", "formats", multiple=True, type=Choice(FORMATS), help="Of the frames; repeatable. [default: bgeo]"
 )
 @click.option(
     "--checkpoint-every",
@@ -71,7 +69,7 @@ def _kept_settings(assignments: tuple[str, ...]) -> list[str]:
 @click.option("--profile", is_flag=True, help="Time every launch by name, and show what limits it.")
 @click.option(
     "--roofline",
-    type=click.Choice(list(gpus()), case_sensitive=False),
+    type=Choice(list(gpus()), case_sensitive=False),
     help="Estimate beside the profile the least time of each launch on this GPU.",
 )
 @click.option("--restart", is_flag=True, help="Replace what is in the folder instead of continuing.")
@@ -134,7 +132,7 @@ def run(
         _execute(loaded, options, as_json, quiet)
 
 
-@click.command()
+@click.command(short_help="Continue a run after Ctrl-C, a crash, or for more.")
 @click.argument("folder", type=click.Path(path_type=Path))
 @_with(_WHERE_OPTIONS)
 @_with(_OUTPUT_OPTIONS)
@@ -149,10 +147,7 @@ def resume(
       fontana resume out/fountain --frames 480
       fontana resume out/fountain --backend opencl
     """
-    manifest = Manifest.load(folder)
-    if manifest is None:
-        raise _core.BadInput(f'"{folder}" has no run.json: it is not the folder of a run')
-    data = manifest.data
+    data = Manifest.of_run(folder).data
     scene = resolve(data["scene"], data["scene"]["name"], _settings(backend, threads, frames))
     options = RunOptions(
         out=folder,

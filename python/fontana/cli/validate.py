@@ -13,6 +13,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 from fontana import _core
 from fontana.cli.information import print_table
+from fontana.cli.usage import Choice
 from fontana.tables import parameters
 from fontana.validate import SIZES, Session, case_names, find_case
 
@@ -21,14 +22,14 @@ class NotKept(_core.InternalError):
     """A figure is beyond its limit."""
 
 
-@click.command()
+@click.command(short_help="Compare with experiments and closed forms.")
 @click.argument("cases", nargs=-1, metavar="[CASE...]")
 @click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), default=Path("out/validate"), show_default=True
 )
-@click.option("--size", type=click.Choice(SIZES), default=SIZES[0], show_default=True, help="Of all cases.")
-@click.option("--method", type=click.Choice(parameters()["fluid.method"].choices), help="Instead of each case's own.")
-@click.option("--backend", type=click.Choice(parameters()["solver.backend"].choices), help="Where to compute.")
+@click.option("--size", type=Choice(SIZES), default=SIZES[0], show_default=True, help="Of all cases.")
+@click.option("--method", type=Choice(parameters()["fluid.method"].choices), help="Instead of each case's own.")
+@click.option("--backend", type=Choice(parameters()["solver.backend"].choices), help="Where to compute.")
 @click.option("--threads", type=click.IntRange(0), help="Threads of the cpu backend; 0: all cores.")
 @click.option("--resume", is_flag=True, help="Keep the cases that this commit has finished in --out.")
 @click.option("--list", "list_only", is_flag=True, help="Name the cases and stop.")

@@ -10,14 +10,14 @@ import click
 import numpy as np
 
 from fontana import _core
-from fontana.backends import absent_backends
+from fontana.backends import absent_backends, absent_neighbors
 from fontana.cli.information import print_table
+from fontana.cli.usage import Choice
 from fontana.tables import parameters
 
 METHODS = parameters()["fluid.method"].choices
 TOLERANCES = {"density": 2e-6, "acceleration": 2e-5, "velocity": 1e-4, "position": 2e-5}
 SUBSTEPS = 20
-_HAVE_TILES = (("mueller", "cuda"), ("mueller", "opencl"))  # they add up in the order of the grid
 _COLUMNS = ("method", "backend", "device", "neighbors", "precision")
 _SPACING = 0.02  # m
 _DT = 5e-4  # s
@@ -28,9 +28,9 @@ class Disagreement(_core.InternalError):
     """A backend computes something else than the reference."""
 
 
-@click.command()
+@click.command(short_help="Compare devices and schemes with the plain CPU.")
 @click.option(
-    "--method", "methods", multiple=True, type=click.Choice(METHODS), help="Only this one; repeatable. [default: all]"
+    "--method", "methods", multiple=True, type=Choice(METHODS), help="Only this one; repeatable. [default: all]"
 )
 @click.option("--json", "as_json", is_flag=True, help="As JSON.")
 def verify(methods: tuple[str, ...], as_json: bool) -> None:
@@ -58,23 +58,25 @@ def verify(methods: tuple[str, ...], as_json: bool) -> None:
 
 def compare_all(methods: Iterable[str] = METHODS) -> tuple[list[dict], dict[str, str]]:
     """A row for each combination, and why backends are missing. Raises the library's errors."""
-    devices = _devices()
+    found = _core.devices()
+    devices = _numbered(found)
     rows = []
     for method in methods:
         rows += _compare(method, devices)
-    return rows, absent_backends()
+    return rows, absent_backends(found)
 
 
-def _compare(method: str, devices: list[tuple[str, int]]) -> list[dict]:
+def _compare(method: str, devices: list[tuple[_core.Device, int]]) -> list[dict]:
     plainest = _results(method, "cpu", 0, "all-pairs", "strict")
     strict: dict[str, dict] = {"all-pairs": plainest}
     rows = []
     schemes = itertools.product(devices, ("all-pairs", "grid", "tiles"), ("strict", "fast"))
-    for device, neighbors, precision in schemes:
-        if neighbors == "tiles" and (method, device[0]) not in _HAVE_TILES:
+    for (device, number), neighbors, precision in schemes:
+        if neighbors in absent_neighbors(device, method):
             continue
-        results = _results(method, *device, neighbors, precision)
-        row = dict(zip(_COLUMNS, (method, *device, neighbors, precision), strict=True))
+        scheme = (method, device.backend, number, neighbors, precision)
+        results = _results(*scheme)
+        row = dict(zip(_COLUMNS, scheme, strict=True))
         # Only the grid has cells to merge: there the multilevel solve takes another path to the same tolerance.
         is_own_path = method == "dfsph" and neighbors == "grid"
         reference = strict.get("grid", results) if is_own_path else plainest
@@ -82,22 +84,23 @@ def _compare(method: str, devices: list[tuple[str, int]]) -> list[dict]:
         row["passed"] = all(row[name] <= limit for name, limit in TOLERANCES.items())
         row["same_bits"] = None
         if precision == "strict":
-            first = strict.setdefault("grid" if neighbors == "tiles" else neighbors, results)
+            order_of_sums = "grid" if neighbors == "tiles" else neighbors
+            first = strict.setdefault(order_of_sums, results)
             row["same_bits"] = all(np.array_equal(first[name], results[name]) for name in TOLERANCES)
             row["passed"] &= row["same_bits"]
         rows.append(row)
     return rows
 
 
-def _devices() -> list[tuple[str, int]]:
-    """Each that is available, as its backend and its number there, the CPU first."""
-    here: list[tuple[str, int]] = []
+def _numbered(devices: list[_core.Device]) -> list[tuple[_core.Device, int]]:
+    """Each that is available with its number within its backend, the CPU first."""
+    here: list[tuple[_core.Device, int]] = []
     numbers: dict[str, int] = {}
-    for device in _core.devices():
+    for device in devices:
         number = numbers[device.backend] = numbers.get(device.backend, -1) + 1
         if device.available:
-            here.append((device.backend, number))
-    return sorted(here, key=lambda device: device[0] != "cpu")
+            here.append((device, number))
+    return sorted(here, key=lambda entry: entry[0].backend != "cpu")
 
 
 def _scheme(row: dict) -> list:

@@ -7,18 +7,17 @@ from pathlib import Path
 import click
 
 from fontana import _core
+from fontana.cli.usage import Choice
 from fontana.overrides import parse_assignment
 from fontana.render.options import parse_size
 from fontana.scene import load_scene
 from fontana.tables import parameters
 
 
-@click.command()
+@click.command(short_help="Look at a scene or a run in a window.")
 @click.argument("source")
-@click.option("--backend", type=click.Choice(parameters()["solver.backend"].choices), help="Where to compute.")
-@click.option(
-    "--neighbors", type=click.Choice(parameters()["solver.neighbors"].choices), help="How neighbours are found."
-)
+@click.option("--backend", type=Choice(parameters()["solver.backend"].choices), help="Where to compute.")
+@click.option("--neighbors", type=Choice(parameters()["solver.neighbors"].choices), help="How neighbours are found.")
 @click.option(
     "--set", "assignments", multiple=True, metavar="PATH=VALUE", help="Change a value of the scene; repeatable."
 )

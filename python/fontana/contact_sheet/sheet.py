@@ -20,6 +20,7 @@ from fontana.scene import Scene
 COLUMNS = 4
 FRAME_COUNT = 8
 PANEL = (640, 440)  # pixels
+HEAD, FOOT, GAP = 56, 40, 6  # pixels above and below all panels, and around each
 SUPERSAMPLING = 2
 SPHERE_SCALE = 1.15  # drawn over real radius: closes the gaps of a fluid at rest
 DARK, LIGHT_TEXT, DIM_TEXT = "#07090d", "#e8eef5", "#8b98a8"
@@ -80,45 +81,47 @@ def _sheet(scene: Scene, manifest: Manifest, records: list[dict], images: list[n
     import matplotlib
 
     matplotlib.use("Agg")
-    from matplotlib import patheffects, pyplot
+    from matplotlib import pyplot
 
     columns = min(COLUMNS, len(images))
     rows = -(-len(images) // columns)
-    head, foot, gap = 56, 40, 6
-    width = columns * PANEL[0] + (columns + 1) * gap
-    height = rows * (PANEL[1] + gap) + gap + head + foot
+    width = columns * PANEL[0] + (columns + 1) * GAP
+    height = rows * (PANEL[1] + GAP) + GAP + HEAD + FOOT
     figure = pyplot.figure(figsize=(width / 100, height / 100), dpi=100, facecolor=DARK)
     for index, (record, image) in enumerate(zip(records, images, strict=True)):
         row, column = divmod(index, columns)
-        left = gap + column * (PANEL[0] + gap)
-        bottom = height - head - (row + 1) * (PANEL[1] + gap)
+        left = GAP + column * (PANEL[0] + GAP)
+        bottom = height - HEAD - (row + 1) * (PANEL[1] + GAP)
         axes = figure.add_axes((left / width, bottom / height, PANEL[0] / width, PANEL[1] / height))
-        axes.imshow(image, interpolation="none", aspect="auto")
-        axes.set_axis_off()
-        caption = f"frame {record['frame']}   {record['time']:.2f} s"
-        outline = [patheffects.withStroke(linewidth=3, foreground=DARK)]  # drops may fly behind the words
-        place = {"transform": axes.transAxes, "path_effects": outline}
-        axes.text(0.025, 0.045, caption, color=LIGHT_TEXT, fontsize=13, **place)
-    particles = records[-1]["particles"]
-    device = manifest.data["device"]["backend"]
-    title = f"{scene.name.replace('_', ' ')}"
-    figure.text(gap * 2 / width, 1 - head / 2 / height, title, color=LIGHT_TEXT, fontsize=20, va="center")
-    facts = f"{particles:,} particles   {device}"
-    figure.text(1 - gap * 2 / width, 1 - head / 2 / height, facts, color=DIM_TEXT, fontsize=14, va="center", ha="right")
-    _speed_scale(figure, fast, width, height, foot)
+        _draw_panel(axes, image, f"frame {record['frame']}   {record['time']:.2f} s")
+    margin, y = 2 * GAP / width, 1 - HEAD / 2 / height
+    figure.text(margin, y, scene.name.replace("_", " "), color=LIGHT_TEXT, fontsize=20, va="center")
+    facts = f"{records[-1]['particles']:,} particles   {manifest.data['device']['backend']}"
+    figure.text(1 - margin, y, facts, color=DIM_TEXT, fontsize=14, va="center", ha="right")
+    _speed_scale(figure, fast, height)
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", facecolor=DARK)
     pyplot.close(figure)
     return buffer.getvalue()
 
 
-def _speed_scale(figure, fast: float, width: int, height: int, foot: int) -> None:
+def _draw_panel(axes, image: np.ndarray, caption: str) -> None:
+    from matplotlib import patheffects
+
+    axes.imshow(image, interpolation="none", aspect="auto")
+    axes.set_axis_off()
+    outline = [patheffects.withStroke(linewidth=3, foreground=DARK)]  # drops may fly behind the words
+    place = {"transform": axes.transAxes, "path_effects": outline}
+    axes.text(0.025, 0.045, caption, color=LIGHT_TEXT, fontsize=13, **place)
+
+
+def _speed_scale(figure, fast: float, height: int) -> None:
     """What the colours mean."""
     share = np.linspace(0, 1, 256)
     ramp = np.stack([np.interp(share, SPEED_STOPS, SPEED_COLOURS[:, k]) for k in range(3)], axis=1)
-    axes = figure.add_axes((0.44, 0.4 * foot / height, 0.12, 0.22 * foot / height))
+    axes = figure.add_axes((0.44, 0.4 * FOOT / height, 0.12, 0.22 * FOOT / height))
     axes.imshow(ramp[None], aspect="auto")
     axes.set_axis_off()
-    y = 0.52 * foot / height
+    y = 0.52 * FOOT / height
     figure.text(0.435, y, "0", color=DIM_TEXT, fontsize=12, va="center", ha="right")
     figure.text(0.565, y, f"{fast:.2g} m/s", color=DIM_TEXT, fontsize=12, va="center", ha="left")

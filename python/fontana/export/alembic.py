@@ -19,8 +19,9 @@ import numpy as np
 from fontana import _core
 from fontana.export.staged import staged
 from fontana.export.usd import StageLayout
-from fontana.optional import require
+from fontana.optional import OptionalPackage
 
+_ALEMBIC = OptionalPackage("alembic3d", "alembic", "Alembic")
 _ATTRIBUTES = ("position", "velocity", "id", "radius")
 
 
@@ -28,9 +29,9 @@ class PointsArchive:
     """OPoints at /NAME/particles that grow by frames; a sample's time in seconds is its frame over the frame rate."""
 
     def __init__(self, path: Path, layout: StageLayout):
-        self._abc = require("alembic3d.Abc", "alembic3d", "Alembic")
-        self._geometry = require("alembic3d.AbcGeom", "alembic3d", "Alembic")
-        self._imath = require("imath", "alembic3d", "Alembic")
+        self._abc = _ALEMBIC.module("alembic3d.Abc")
+        self._geometry = _ALEMBIC.module("alembic3d.AbcGeom")
+        self._imath = _ALEMBIC.module("imath")
         self._frame_rate = layout.frame_rate
         note = f"Y up, {layout.unit:g} m a unit"
         self._archive = self._abc.CreateArchiveWithInfo(
@@ -64,7 +65,7 @@ class PointsArchive:
         del self._points, self._archive
 
     def _begin(self, frame: int) -> None:
-        core = require("alembic3d.AbcCoreAbstract", "alembic3d", "Alembic")
+        core = _ALEMBIC.module("alembic3d.AbcCoreAbstract")
         sampling = core.TimeSampling(1.0 / self._frame_rate, frame / self._frame_rate)
         self._points.getSchema().setTimeSampling(self._archive.addTimeSampling(sampling))
 
@@ -129,7 +130,7 @@ def _serve(pipe: Connection, path: Path, layout: StageLayout) -> None:
 @contextlib.contextmanager
 def points_archive(path: Path, layout: StageLayout) -> Iterator[ArchiveProcess]:
     """An archive to add frames to; the file is there once the block ends. Raises IoError."""
-    require("alembic3d.Abc", "alembic3d", "Alembic")
+    _ALEMBIC.module("alembic3d.Abc")
     with staged(path) as temporary:
         archive = ArchiveProcess(temporary, layout)
         try:

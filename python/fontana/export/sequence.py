@@ -22,12 +22,12 @@ import numpy as np
 from fontana import _core
 from fontana.export.record import Record
 from fontana.export.target import Target
+from fontana.output_folder import make_output_folder
 from fontana.runs.cache import Cache, read_checked
 from fontana.runs.frame_numbers import refuse_skipped
 from fontana.runs.lock import FolderLock
 from fontana.runs.progress import Quiet
-from fontana.runs.runner import StoppedError
-from fontana.runs.stop import StopSignals
+from fontana.runs.stop import StoppedError, StopSignals
 
 _SIGNAL_DELAY = 0.2  # s until a signal that reached another process has reached this one too
 
@@ -80,7 +80,7 @@ def make_sequence(
     same call continues. Raises IoError and OutOfMemory, when what was finished stays.
     """
     target = options.target
-    _create(target.folder)
+    make_output_folder(target.folder)
     with FolderLock(target.folder) as lock, StopSignals("stopping after the frames in work") as stop:
         for note in lock.notes:
             progress.note(note)
@@ -108,13 +108,6 @@ def make_sequence(
             message = f"stopped with {done} of {len(frames)} frames; the same command continues"
             stopped = StoppedError(stop.requested, message)
         return SequenceResult(len(frames), there, skipped, stopped)
-
-
-def _create(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise _core.IoError(f'cannot write to "{folder}": {error.strerror}') from error
 
 
 def _run(tasks: list[_Task], make: FrameMaker, jobs: int, stop: StopSignals) -> Iterator[dict]:

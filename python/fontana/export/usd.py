@@ -13,9 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from fontana.export.staged import staged
-from fontana.optional import require
+from fontana.optional import OptionalPackage
 from fontana.surface import Mesh
 
+_USD = OptionalPackage("usd-core", "usd", "USD")
 SUFFIXES = (".usd", ".usdc", ".usda")
 # Values wait in memory until they are saved; binary layers take them in parts, text only as a whole.
 _SAVE_EVERY_BYTES = 2**28
@@ -34,7 +35,7 @@ class StageLayout:
 
 def check_installed() -> None:
     """Raises BadInput with the line that installs what is missing."""
-    require("pxr.Usd", "usd-core", "USD")
+    _USD.module("pxr.Usd")
 
 
 class PointsStage:
@@ -42,7 +43,7 @@ class PointsStage:
 
     def __init__(self, path: Path, layout: StageLayout):
         self._stage = _new_stage(path, layout)
-        geometry = require("pxr.UsdGeom", "usd-core", "USD")
+        geometry = _USD.module("pxr.UsdGeom")
         self._points = geometry.Points.Define(self._stage, f"{_root(layout)}/particles")
         self._attributes = {
             "points": self._points.CreatePointsAttr(),
@@ -57,7 +58,7 @@ class PointsStage:
 
     def add(self, frame: int, arrays: dict[str, np.ndarray]) -> None:
         """The particles of a frame, with their diameters as widths."""
-        vt = require("pxr.Vt", "usd-core", "USD")
+        vt = _USD.module("pxr.Vt")
         widths = (2.0 * arrays["radius"]).astype(np.float32)
         values = {
             "points": vt.Vec3fArray.FromNumpy(arrays["position"]),
@@ -89,7 +90,7 @@ def points_stage(path: Path, layout: StageLayout) -> Iterator[PointsStage]:
 
 def write_mesh_frame(mesh: Mesh, frame: int, path: Path, layout: StageLayout) -> None:
     """A layer with one time sample of the mesh /NAME/surface. Raises IoError."""
-    vt = require("pxr.Vt", "usd-core", "USD")
+    vt = _USD.module("pxr.Vt")
     with staged(path) as temporary:
         stage = _new_stage(temporary, StageLayout(layout.name, layout.frame_rate, layout.unit, frame, frame))
         prim = _define_mesh(stage, layout)
@@ -105,7 +106,7 @@ def write_mesh_frame(mesh: Mesh, frame: int, path: Path, layout: StageLayout) ->
 
 def write_clips_stage(path: Path, files: Mapping[int, str], layout: StageLayout) -> None:
     """A small stage that plays the layers `files`, by frame and beside `path`, as value clips. Raises IoError."""
-    usd, sdf = require("pxr.Usd", "usd-core", "USD"), require("pxr.Sdf", "usd-core", "USD")
+    usd, sdf = _USD.module("pxr.Usd"), _USD.module("pxr.Sdf")
     with staged(path) as temporary:
         stage = _new_stage(temporary, layout)
         prim = _define_mesh(stage, layout).GetPrim()
@@ -124,7 +125,7 @@ def write_clips_stage(path: Path, files: Mapping[int, str], layout: StageLayout)
 
 
 def _new_stage(path: Path, layout: StageLayout):
-    usd, geometry = require("pxr.Usd", "usd-core", "USD"), require("pxr.UsdGeom", "usd-core", "USD")
+    usd, geometry = _USD.module("pxr.Usd"), _USD.module("pxr.UsdGeom")
     stage = usd.Stage.CreateNew(str(path))
     geometry.SetStageUpAxis(stage, geometry.Tokens.y)
     geometry.SetStageMetersPerUnit(stage, layout.unit)
@@ -137,13 +138,13 @@ def _new_stage(path: Path, layout: StageLayout):
 
 
 def _root(layout: StageLayout) -> str:
-    tf = require("pxr.Tf", "usd-core", "USD")
+    tf = _USD.module("pxr.Tf")
     return f"/{tf.MakeValidIdentifier(layout.name)}"
 
 
 def _define_mesh(stage, layout: StageLayout):
     """A polygon mesh as it is, without subdivision, whose attributes have no values yet."""
-    geometry = require("pxr.UsdGeom", "usd-core", "USD")
+    geometry = _USD.module("pxr.UsdGeom")
     mesh = geometry.Mesh.Define(stage, f"{_root(layout)}/surface")
     mesh.CreateSubdivisionSchemeAttr(geometry.Tokens.none)
     mesh.CreateOrientationAttr(geometry.Tokens.rightHanded)
@@ -155,7 +156,7 @@ def _define_mesh(stage, layout: StageLayout):
 
 def _extent(position: np.ndarray, margin: float):
     """The box of all positions, wider by a radius; a point at the origin where there are none."""
-    vt = require("pxr.Vt", "usd-core", "USD")
+    vt = _USD.module("pxr.Vt")
     if len(position) == 0:
         return vt.Vec3fArray.FromNumpy(np.zeros((2, 3), dtype=np.float32))
     box = np.stack([position.min(axis=0) - margin, position.max(axis=0) + margin])

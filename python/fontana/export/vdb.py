@@ -13,6 +13,7 @@ import numpy as np
 
 from fontana import _core
 from fontana.export.staged import staged
+from fontana.optional import OptionalPackage
 from fontana.surface import Mesh, SurfaceSettings, is_on_grid, reconstruct
 
 HALF_WIDTH = 3.0  # voxels on each side of the surface that carry distances, OpenVDB's usual band
@@ -61,9 +62,7 @@ def find_openvdb() -> ModuleType:
             continue
     bundled = _bundled_with_blender()
     if bundled is None:
-        raise _core.BadInput(
-            "VDB needs the Python module openvdb, which is not here; pip install 'fontana[vdb]' brings that of Blender"
-        )
+        raise OptionalPackage("openvdb", "vdb", "VDB").missing()
     specification = importlib.util.spec_from_file_location("openvdb", bundled)
     module = importlib.util.module_from_spec(specification)
     sys.modules["openvdb"] = module

@@ -12,8 +12,7 @@ from fontana.export.target import Target
 from fontana.runs.cache import Cache
 from fontana.runs.frame_numbers import refuse_skipped
 from fontana.runs.progress import Quiet
-from fontana.runs.runner import StoppedError
-from fontana.runs.stop import StopSignals
+from fontana.runs.stop import StoppedError, StopSignals
 
 
 class FrameWriter(Protocol):
@@ -30,9 +29,9 @@ def write_whole(
     Frames that are missing or damaged are skipped: once all others are done, IoError names them. Raises StoppedError on
     Ctrl-C and SIGTERM, when the file has the frames so far. Without a single frame, what was there before stays.
     """
-    progress.start(str(target.whole), len(frames), 0)
     with StopSignals("stopping after this frame") as stop:
         with writer as file:
+            progress.start(str(target.whole), len(frames), 0)
             added, skipped = _add_frames(cache, frames, file, stop, progress)
             if not added:
                 _raise_if_incomplete(added, skipped, frames, target, stop)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 
 from fontana import _core
+from fontana.optional import OptionalPackage
 
 REQUIRED_VERSION = 330  # OpenGL 3.3 core
 _INSTALL = "on Debian and Ubuntu: apt install libegl1 libgl1 libgl1-mesa-dri"
@@ -13,14 +14,9 @@ _INSTALL = "on Debian and Ubuntu: apt install libegl1 libgl1 libgl1-mesa-dri"
 def create_headless_context() -> object:
     """A moderngl context: the GPU's where there is one, else Mesa's renderer on the CPU. No display is needed.
 
-    Raises DeviceUnavailable with one sentence if moderngl, EGL or OpenGL 3.3 are missing.
+    Raises BadInput without moderngl, DeviceUnavailable without EGL or OpenGL 3.3; each says what to install.
     """
-    try:
-        import moderngl
-    except ImportError as error:
-        raise _core.DeviceUnavailable(
-            "pictures need moderngl, which is not installed; pip install 'fontana[view]' brings it"
-        ) from error
+    moderngl = OptionalPackage("moderngl", "view", "a picture").module("moderngl")
     # EGL is what needs no display on Linux; on Windows and macOS the platform's own standalone context needs none.
     backend = {"backend": "egl"} if sys.platform.startswith("linux") else {}
     try:

@@ -10,6 +10,7 @@ from fontana import _core
 from fontana.gl import lights
 from fontana.gl.camera import Camera
 from fontana.gl.color_maps import color_map_texture
+from fontana.gl.context import REQUIRED_VERSION
 from fontana.gl.fluid import FluidPass
 from fontana.gl.frame_data import FrameData, Look
 from fontana.gl.particles import Particles
@@ -44,7 +45,7 @@ class Renderer:
     """
 
     def __init__(self, context: object):
-        if context.version_code < 330:
+        if context.version_code < REQUIRED_VERSION:
             raise _core.DeviceUnavailable(
                 f"pictures need OpenGL 3.3; this context has {context.version_code / 100:.1f}"
             )

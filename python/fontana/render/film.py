@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from fontana import _core
+from fontana.optional import OptionalPackage
 
 _COLOURS = (
     "split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle"
@@ -100,6 +101,4 @@ def _ffmpeg() -> str:
 
         return get_ffmpeg_exe()
     except (ImportError, RuntimeError) as error:
-        raise _core.DeviceUnavailable(
-            "films need ffmpeg, which is not here; pip install 'fontana[view]' brings it; pictures (.png) need none"
-        ) from error
+        raise OptionalPackage("ffmpeg", "view", "a film").missing() from error

@@ -20,8 +20,7 @@ from fontana.render.options import RenderOptions
 from fontana.render.outputs import Output
 from fontana.runs.frame_numbers import refuse_skipped
 from fontana.runs.progress import Quiet
-from fontana.runs.runner import StoppedError
-from fontana.runs.stop import StopSignals
+from fontana.runs.stop import StoppedError, StopSignals
 
 
 def render(footage: Footage, options: RenderOptions, output: Output, progress: Quiet) -> list[Path]:

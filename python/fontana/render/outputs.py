@@ -11,6 +11,7 @@ import numpy as np
 
 from fontana import _core
 from fontana.file_suffix import check_suffix
+from fontana.output_folder import make_output_folder
 from fontana.render.film import FILM_SUFFIXES, Film
 from fontana.runs.frame_numbers import is_numbered, numbered
 
@@ -38,11 +39,7 @@ class Output(Protocol):
 def open_output(path: Path, size: tuple[int, int], fps: float, frame_count: int, restart: bool) -> Output:
     """The output for the name of a file. Raises BadInput for a suffix or a pattern that cannot be, IoError."""
     suffix = check_suffix(path, (".png", *FILM_SUFFIXES))
-    folder = path.parent
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise _core.IoError(f'cannot write to "{folder}": {error.strerror}') from error
+    make_output_folder(path.parent)
     if suffix != ".png":
         return Film(path, size, fps)
     if frame_count > 1 and not is_numbered(path.name):

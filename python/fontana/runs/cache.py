@@ -31,9 +31,7 @@ class Cache:
     """
 
     def __init__(self, folder: Path):
-        manifest = Manifest.load(folder)
-        if manifest is None:
-            raise _core.BadInput(f'"{folder}" has no run.json: it is not the folder of a run')
+        manifest = Manifest.of_run(folder)
         if not manifest.frames:
             raise _core.BadInput(f'"{folder}" has no finished frames yet')
         self.folder = folder

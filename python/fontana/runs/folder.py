@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import shutil
 from pathlib import Path
 
 from fontana import _core
+from fontana.output_folder import make_output_folder
 from fontana.runs.manifest import MANIFEST_NAME, Manifest
 
 CHECKPOINT_BYTES_PER_PARTICLE = 64
@@ -23,13 +23,7 @@ class RunFolder:
 
     def create(self) -> None:
         """Makes the folder and tries a write in it. Raises IoError."""
-        try:
-            self.path.mkdir(parents=True, exist_ok=True)
-            probe = self.path / f".{self.name}.{os.getpid()}.tmp"
-            probe.touch()
-            probe.unlink()
-        except OSError as error:
-            raise _core.IoError(f'cannot write to "{self.path}": {error.strerror}') from error
+        make_output_folder(self.path)
 
     def check_space(self, frame_bytes: int, particle_count: int) -> None:
         """Raises IoError unless two frames and a checkpoint of so many particles fit on the disk."""

@@ -49,6 +49,14 @@ class Manifest:
         self.data = data
 
     @classmethod
+    def of_run(cls, folder: Path) -> Manifest:
+        """The manifest of a folder, which must be that of a run. Raises BadInput if it is not."""
+        manifest = cls.load(folder)
+        if manifest is None:
+            raise _core.BadInput(f'"{folder}" has no {MANIFEST_NAME}: it is not the folder of a run')
+        return manifest
+
+    @classmethod
     def load(cls, folder: Path) -> Manifest | None:
         """The manifest of a folder, or None if it has none. Raises BadInput if it cannot be used."""
         path = folder / MANIFEST_NAME

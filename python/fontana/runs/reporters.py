@@ -80,11 +80,11 @@ class LineReporter(Reporter):
     """A line a frame: for logs, and wherever there is no terminal."""
 
     def __init__(self) -> None:
-        self.console = Console(highlight=False, soft_wrap=True)
+        self.console = Console(highlight=False)
         self._pace = Pace()
 
     def note(self, sentence: str) -> None:
-        self.console.print(f"note: {sentence}", markup=False)
+        self.print(f"note: {sentence}")
 
     def start(self, scene: Scene, simulation: _core.Simulation, folder: RunFolder, done: int) -> None:
         count = simulation.emitted_by(scene.frame_count)
@@ -123,7 +123,7 @@ class LineReporter(Reporter):
             self.print(note)
 
     def print(self, text: str) -> None:
-        self.console.print(text, markup=False)
+        self.console.print(text, markup=False, soft_wrap=True)
 
 
 class BarReporter(LineReporter):
@@ -131,7 +131,9 @@ class BarReporter(LineReporter):
 
     def __init__(self) -> None:
         super().__init__()
-        columns = (TextColumn("{task.description}"), BarColumn(bar_width=32), TextColumn("{task.fields[pace]}"))
+        # Colours that every terminal has: of 16, the usual ones make a full bar as grey as an empty one.
+        bar = BarColumn(bar_width=32, complete_style="cyan", finished_style="green")
+        columns = (TextColumn("{task.description}"), bar, TextColumn("{task.fields[pace]}"))
         self._progress = Progress(*columns, console=self.console)
         self._details = Text("", style="dim")
         self._live = Live(Group(self._progress, self._details), console=self.console, refresh_per_second=8)

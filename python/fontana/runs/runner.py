@@ -17,20 +17,12 @@ from fontana.runs.folder import RunFolder
 from fontana.runs.lock import FolderLock
 from fontana.runs.manifest import Manifest, hash_text
 from fontana.runs.reporters import Reporter
-from fontana.runs.stop import StopSignals
+from fontana.runs.stop import StoppedError, StopSignals
 from fontana.runs.text import length
 from fontana.scene import Scene, changed_keys, digest, physics
 
 DEFAULT_CHECKPOINT_EVERY = 10
 _NOTHING_SAVED = -1
-
-
-class StoppedError(Exception):
-    """The run was stopped by a signal; everything so far is saved. `signal` is its number."""
-
-    def __init__(self, signal: int, message: str):
-        super().__init__(message)
-        self.signal = signal
 
 
 @dataclass
@@ -57,6 +49,8 @@ def run_scene(scene: Scene, options: RunOptions, reporter: Reporter) -> None:
     simulation = scene.build()
     simulation.check()
     _check_source(scene, simulation)
+    # Starts the device. What it refuses leaves the frames of a former run alone, with --restart too.
+    check_memory(simulation, simulation.emitted_by(scene.frame_count))
     folder = RunFolder(options.out, scene.name)
     folder.create()
     with FolderLock(folder.path) as lock, StopSignals("stopping after this frame and saving a checkpoint") as stop:
@@ -200,12 +194,11 @@ class _Run:
         return Manifest(self.folder.path, data)
 
     def _preflight(self) -> None:
-        """Refuses, before any work, what would fail at the last frame for want of memory or disk."""
+        """Refuses, before any work, what would fail at the last frame for want of disk."""
         device = self.simulation.device()
         names = ("backend", "name", "driver", "memory_bytes", "compute_units")
         self.manifest.data["device"] = {name: getattr(device, name) for name in names}
         count = self.simulation.emitted_by(self.scene.frame_count)
-        check_memory(self.simulation, count)
         frame_bytes = count * sum(BYTES_PER_PARTICLE[format] for format in self.options.formats)
         self.folder.check_space(frame_bytes, count)
 
@@ -237,7 +230,8 @@ class _Run:
         self._checkpoint()
         message = f"stopped after frame {len(self.manifest.frames)} of {self.scene.frame_count}"
         self._leave("interrupted", message)
-        raise StoppedError(self.stop.requested, message)
+        going_on = shlex.join(["fontana", "resume", str(self.folder.path)])
+        raise StoppedError(self.stop.requested, f"{message}; {going_on} goes on")
 
     def _leave(self, state: str, message: str) -> None:
         self.manifest.data |= {"state": state, "message": message}

@@ -12,6 +12,14 @@ PATIENCE = 5.0  # s for the frame to finish: a farm that sends SIGTERM gives abo
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
+class StoppedError(Exception):
+    """What was at work was stopped by a signal; everything so far is saved. `signal` is its number."""
+
+    def __init__(self, signal: int, message: str):
+        super().__init__(message)
+        self.signal = signal
+
+
 class StopSignals:
     """Catches the signals while in the `with` block, and says `message`; only the main thread can.
 

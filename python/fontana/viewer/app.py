@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from fontana.runs.runner import StoppedError
+from fontana.runs.stop import StoppedError
 from fontana.scene import Scene
 from fontana.viewer.glfw_window import GlfwWindow, import_libraries
 

@@ -3,25 +3,20 @@
 from __future__ import annotations
 
 import contextlib
-import importlib
 
 from fontana import _core
 from fontana.gl.context import REQUIRED_VERSION
+from fontana.optional import OptionalPackage
 
 _INSTEAD = "`fontana render` draws the frames of a run without a window"
 _NO_OPENGL = "this display has no OpenGL 3.3 for a window"
 
 
 def import_libraries() -> None:
-    """Raises DeviceUnavailable with the line to install them if the window's libraries are missing."""
-    try:
-        importlib.import_module("imgui_bundle")  # before glfw: both must use the one copy of GLFW that it brings
-        importlib.import_module("glfw")
-        importlib.import_module("moderngl")
-    except ImportError as error:
-        raise _core.DeviceUnavailable(
-            f"the viewer needs {error.name or error}, which is not installed; pip install 'fontana[view]' brings it"
-        ) from error
+    """Raises BadInput with the line to install them if the window's libraries are missing."""
+    # imgui_bundle before glfw: both must use the one copy of GLFW that it brings.
+    for name in ("imgui_bundle", "glfw", "moderngl"):
+        OptionalPackage(name, "view", "the viewer").module(name)
 
 
 class GlfwWindow:

@@ -23,7 +23,7 @@ KEYS = (
     Key("up_arrow", "Up", "faster", "faster"),
     Key("down_arrow", "Down", "slower", "slower"),
     Key("b", "B", "compute on the next backend there is", "next_backend"),
-    Key("n", "N", "find neighbours by the next scheme", "next_neighbors"),
+    Key("n", "N", "find neighbours by the next scheme there is", "next_neighbors"),
     Key("f", "F", "frame all", "frame_all"),
     Key("v", "V", "the scene's own view", "scene_view"),
     Key("_1", "1", "draw points", "draw_points"),

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from fontana import _core
-from fontana.backends import absent_backends
-from fontana.cli.exit_codes import sentence
+from fontana.backends import absent_backends, absent_neighbors, chosen_device
+from fontana.exit_codes import sentence
 from fontana.formats import particle_radius
 from fontana.gl.frame_data import FrameData
 from fontana.runs.runner import frame_record
@@ -36,9 +36,8 @@ class Failure:
 class LiveSource:
     """Simulates `scene`. Methods are the window's thread's; none of them waits for a frame.
 
-    settings         the parameters and colliders; change them through `set` and `set_collider`
-    rates            frames a second by scheme
-    absent_backends  those that cannot be switched to, each with the reason
+    settings  the parameters and colliders; change them through `set` and `set_collider`
+    rates     frames a second by scheme
     """
 
     is_live = True
@@ -47,7 +46,7 @@ class LiveSource:
         self.scene = scene
         self.settings = Settings(scene)
         self.rates = SchemeRates()
-        self.absent_backends = absent_backends()
+        self._devices = _core.devices()
         self.frames_per_second = float("inf")  # at most
         self._condition = threading.Condition()
         self._orders = Orders(is_playing=is_playing)
@@ -84,6 +83,15 @@ class LiveSource:
     def frame_rate(self) -> float:
         """Frames a second at which it looks natural."""
         return 1.0 / self.settings.derived().frame_duration
+
+    def absent_choices(self, path: str) -> dict[str, str]:
+        """Words of a parameter that the rest of the settings or this machine cannot have, each with the reason."""
+        if path == "solver.backend":
+            return absent_backends(self._devices)
+        device = chosen_device(self._devices, self.settings.get("solver.backend"))
+        if path == "solver.neighbors" and device:
+            return absent_neighbors(device, self.settings.get("fluid.method"))
+        return {}
 
     # ---- what the window asks for
 

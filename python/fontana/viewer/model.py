@@ -136,8 +136,8 @@ class ViewerModel:
         self.stage_version += 1
 
     def absent_choices(self, path: str) -> Mapping[str, str]:
-        """Words of a parameter that this machine cannot do, each with the reason."""
-        return self.source.absent_backends if self.source.is_live and path == "solver.backend" else {}
+        """Words of a parameter that cannot be taken, each with the reason."""
+        return self.source.absent_choices(path) if self.source.is_live else {}
 
     def next_backend(self) -> None:
         self._next_choice("solver.backend")

@@ -37,7 +37,8 @@ struct DeviceInfo {
     std::uint32_t compute_units = 0;
     bool is_gpu = false;
     bool available = false;
-    std::string reason;  // why it is not, and what to do about it
+    std::string reason;     // why it is not, and what to do about it
+    std::string neighbors;  // the words of solver.neighbors that it has, "grid|all-pairs"
     // Particles in a row that share a list of neighbours (backends/cpu/wide_lists.h); 1: each has its own.
     std::uint32_t list_group = 1;
 };

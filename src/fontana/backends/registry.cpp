@@ -41,10 +41,11 @@ std::unique_ptr<Backend> make_first_gpu(BackendOptions options) {
 }
 
 std::unique_ptr<Backend> require_tiles(std::unique_ptr<Backend> backend, const BackendOptions& options) {
-    const std::string& name = backend->device().backend;
-    if (options.tiles && name == "cpu")
+    const DeviceInfo& device = backend->device();
+    if (options.tiles && device.neighbors.find("tiles") == std::string::npos)
         fail(FONTANA_BAD_INPUT, "solver.neighbors=tiles is a choice of the backends for GPUs and the run is on " +
-                                    name + ": use solver.backend=cuda or opencl, or solver.neighbors=grid");
+                                    device.backend + ", which has " + device.neighbors +
+                                    ": use solver.backend=cuda or opencl, or solver.neighbors=grid");
     return backend;
 }
 

@@ -102,6 +102,7 @@ std::string processor_name() {
 DeviceInfo describe(bool strict) {
     DeviceInfo info;
     info.backend = "cpu";
+    info.neighbors = "grid|all-pairs";
     info.name = processor_name();
     const KernelTable table = choose_kernels(strict);
     info.driver = std::string("native, ") + table.instruction_set;

@@ -101,6 +101,7 @@ CudaDevice describe(int index) {
     device.group_size = static_cast<std::size_t>(std::clamp(most_threads, 1, k_group_size));
     DeviceInfo& info = device.info;
     info.backend = "cuda";
+    info.neighbors = "grid|tiles|all-pairs";
     info.name = query.name();
     info.memory_bytes = query.memory_bytes();
     info.compute_units = static_cast<std::uint32_t>(query.attribute(CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT));

@@ -123,6 +123,7 @@ OpenClDevice describe(cl_platform_id platform, cl_device_id id) {
     device.rounds_divisions_correctly = (rounding & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
     DeviceInfo& info = device.info;
     info.backend = "opencl";
+    info.neighbors = "grid|tiles|all-pairs";
     info.name = query.text(CL_DEVICE_NAME);
     info.driver = platform_text(platform, CL_PLATFORM_NAME) + ", driver " + query.text(CL_DRIVER_VERSION);
     info.memory_bytes = query.value<cl_ulong>(CL_DEVICE_GLOBAL_MEM_SIZE);

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 
 from fontana import _core
-from fontana.runs.runner import StoppedError
+from fontana.runs.stop import StoppedError
 
 OK = 0
 BAD_INPUT = 2
