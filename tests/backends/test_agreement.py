@@ -109,11 +109,14 @@ def test_the_same_run_twice_gives_the_same_bytes(scheme, make_simulation, random
     assert runs[0] == runs[1]
 
 
-def test_the_number_of_threads_does_not_matter(make_simulation, random_block):
+@pytest.mark.parametrize(
+    "settings", [{}, {"fluid__method": "dfsph"}, {"fluid__method": "dfsph", "solver__pressure_solver": "anderson"}]
+)
+def test_the_number_of_threads_does_not_matter(make_simulation, random_block, settings):
     """Enough particles that each thread gets several pieces of every loop and of the sort."""
     runs = set()
     for threads in (1, 2, 4):
-        simulation = make_simulation("cpu", time__frame_rate=1000.0, solver__threads=threads)
+        simulation = make_simulation("cpu", time__frame_rate=1000.0, solver__threads=threads, **settings)
         position, velocity = random_block(34)
         simulation.add_particles(position, velocity)
         simulation.add_collider("plane_y")

@@ -19,6 +19,12 @@ FN SolveSums zero_sums(void) {
     return zero;
 }
 
+// f = max(0, u + omega (r / D + z)) - u, with z the coarse correction (coarse.h) or nothing.
+FN REAL relaxed_step(float relaxation, REAL inverse_diagonal, REAL r, REAL z, REAL u) {
+    const REAL next = u + relaxation * (inverse_diagonal * r + z);
+    return inverse_diagonal > REAL_ZERO ? (next < REAL_ZERO ? REAL_ZERO : next) - u : -u;
+}
+
 // What of r is a fault: too little pressure, or too much where there is some.
 FN REAL two_sided(REAL residual, REAL u) {
     return residual > REAL_ZERO ? residual : u > REAL_ZERO ? -residual : REAL_ZERO;

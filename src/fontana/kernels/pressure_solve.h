@@ -49,11 +49,6 @@ KERNEL void pressure_residual(THREAD_ARG const StepConstants c, GLOBAL const flo
     residual[i] = factor[i].w > 0.0f ? target[i] - k_u : 0.0f;
 }
 
-// f = max(0, u + omega (r / D + z)) - u, with z the coarse correction (coarse.h) or nothing.
-FN float relaxed_step(float relaxation, float inverse_diagonal, float r, float z, float u) {
-    return inverse_diagonal > 0.0f ? max_f(0.0f, u + relaxation * (inverse_diagonal * r + z)) - u : -u;
-}
-
 KERNEL void relax(THREAD_ARG const StepConstants c, const float relaxation, const uint with_coarse,
                   const CoarseLevel level, GLOBAL const float4* RESTRICT position,
                   GLOBAL const uint* RESTRICT cell_start, GLOBAL const float4* RESTRICT factor,

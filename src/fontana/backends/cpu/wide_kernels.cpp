@@ -228,22 +228,34 @@ void correct_pressure(uint begin, uint end, const StepConstants& c, float delta,
     }
 }
 
-// A cell's particles in a row, since they share a correction.
+// The coarse correction of `count` particles from `first` on; 0 where it is not for them. A cell's share one.
+void coarse_corrections(uint first, uint count, const StepConstants& c, const CoarseLevel& level,
+                        const float4* position, const uint* cell_start, const float* weight, const float* residual,
+                        const float* z, const float* u, float* corrections) {
+    for (uint k = 0; k < count;) {
+        const float4 x = position[first + k];
+        const uint cell_end = cell_start[cell_key(c, cell_of(c, x)) + 1];
+        const float z_here = coarse_correction(c, level, x, cell_start, z);
+        for (; k < count && first + k < cell_end; ++k) {
+            const uint i = first + k;
+            corrections[k] = is_pressed(weight[i], residual[i], u[i]) ? z_here : 0.0f;
+        }
+    }
+}
+
+// By whole vectors to the end of the range: a remainder in other instructions would be rounded otherwise, and where a
+// range ends depends on the threads.
 void relax(uint begin, uint end, const StepConstants& c, const float& relaxation, const uint& with_coarse,
            const CoarseLevel& level, const float4* position, const uint* cell_start, const float4* factor,
            const float* weight, const float* residual, const float* z, const float* u, float* step) {
-    for (uint i = begin; i < end;) {
-        uint last = end;
-        float z_here = 0.0f;
-        if (with_coarse) {
-            const uint cell_end = cell_start[cell_key(c, cell_of(c, position[i])) + 1];
-            last = cell_end < end ? cell_end : end;
-            z_here = coarse_correction(c, level, position[i], cell_start, z);
-        }
-        for (; i < last; ++i) {
-            const bool is_corrected = with_coarse && is_pressed(weight[i], residual[i], u[i]);
-            step[i] = relaxed_step(relaxation, factor[i].w, residual[i], is_corrected ? z_here : 0.0f, u[i]);
-        }
+    for (uint i = begin; i < end; i += width) {
+        const uint count = end - i < width ? end - i : width;
+        float corrections[width] = {};
+        if (with_coarse)
+            coarse_corrections(i, count, c, level, position, cell_start, weight, residual, z, u, corrections);
+        float steps[width];
+        store(steps, relaxed_step(relaxation, load(factor + i).w, load(residual + i), load(corrections), load(u + i)));
+        __builtin_memcpy(step + i, steps, count * sizeof(float));
     }
 }
 
