@@ -5,7 +5,8 @@
 A block of water on a floor, a frame of ten substeps to warm up and one that is timed at every count, each in a process
 of its own: its peak of resident memory beyond what it had before the first step, over the count, is the memory of a
 particle. All counts in turn, and that several times, so that a slow minute of the machine is not taken for a large
-count. dfsph takes a fixed number of iterations: a substep is the same work at every count. Writes large.json and
+count. dfsph takes a fixed number of iterations, and steps so short that the water is calm to it, which is when it takes the
+coarse levels in every substep: the same work at every count. Writes large.json and
 large.png.
 
 The cells of the grid are two spacings wide, so a lattice in the middle of the axes has the same eight particles in
@@ -30,7 +31,7 @@ import click
 from fontana import FontanaError, _core, bench
 
 METHODS, BACKENDS = ("dfsph", "mueller"), ("cpu", "opencl")
-SPACING, DT, SUBSTEPS, ITERATIONS = 0.02, 5e-4, 10, 5
+SPACING, DT, SUBSTEPS, ITERATIONS = 0.02, 2e-4, 10, 5
 FROM, BOUND, MOST_BYTES = 100_000, 1.3, 250
 RESULTS = Path(__file__).resolve().parent / "results/local"
 COLOURS = {"dfsph": "#c8641b", "mueller": "#1f5fa8"}
