@@ -5,15 +5,14 @@
 A block of water on a floor, a frame of ten substeps to warm up and one that is timed at every count, each in a process
 of its own: its peak of resident memory beyond what it had before the first step, over the count, is the memory of a
 particle. All counts in turn, and that several times, so that a slow minute of the machine is not taken for a large
-count. dfsph takes a fixed number of iterations, and steps so short that the water is calm to it, which is when it takes the
-coarse levels in every substep: the same work at every count. Writes large.json and
-large.png.
+count. dfsph takes a fixed number of iterations, and the water is calm enough for the coarse levels in every substep:
+the same work at every count. Writes large.json and large.png.
 
 The cells of the grid are two spacings wide, so a lattice in the middle of the axes has the same eight particles in
 every cell where its side is even, which a processor's branch prediction learns, and some on the borders of cells where
 it is odd: mueller on OpenCL took a third less time a particle with one than with the other. A quarter of a spacing
-aside, both meet the cells alike, as each other's mirror image. A jitter of a quarter takes the order out of the
-distances; with more, dfsph would throw apart those that come too close, and time a spray.
+aside, both meet the cells alike, as each other's mirror image. A little jitter takes the order out of the distances;
+with more, dfsph would throw apart those that come too close, and time a spray.
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ import click
 from fontana import FontanaError, _core, bench
 
 METHODS, BACKENDS = ("dfsph", "mueller"), ("cpu", "opencl")
-SPACING, DT, SUBSTEPS, ITERATIONS = 0.02, 2e-4, 10, 5
+SPACING, DT, SUBSTEPS, ITERATIONS = 0.02, 5e-4, 10, 5
 FROM, BOUND, MOST_BYTES = 100_000, 1.3, 250
 RESULTS = Path(__file__).resolve().parent / "results/local"
 COLOURS = {"dfsph": "#c8641b", "mueller": "#1f5fa8"}
@@ -133,7 +132,7 @@ def build(method: str, backend: str, count: int, threads: int) -> _core.Simulati
         simulation.set(name, value)
     side = SPACING * round(count ** (1 / 3))
     aside = SPACING / 4
-    simulation.add_emitter("block", centre=(aside, side / 2, aside), size=(side, side, side), jitter=0.25)
+    simulation.add_emitter("block", centre=(aside, side / 2, aside), size=(side, side, side), jitter=0.15)
     simulation.add_collider("plane_y")
     return simulation
 
