@@ -89,7 +89,7 @@ def merged(samples: tuple[dict, ...]) -> dict:
     times = [sample["nanoseconds_per_particle_substep"] for sample in samples]
     return samples[0] | {
         "nanoseconds_per_particle_substep": bench.statistics(times),
-        # The first process at a count may hold the compiler of an OpenCL device, whose kernels later ones find in a cache.
+        # The first process may hold an OpenCL device's compiler, whose kernels later ones find in a cache.
         "bytes_per_particle": min(sample["bytes_per_particle"] for sample in samples),
     }
 
