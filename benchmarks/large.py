@@ -10,9 +10,9 @@ the same work at every count. Writes large.json and large.png.
 
 The cells of the grid are two spacings wide, so a lattice in the middle of the axes has the same eight particles in
 every cell where its side is even, which a processor's branch prediction learns, and some on the borders of cells where
-it is odd: mueller on OpenCL took a third less time a particle with one than with the other. A quarter of a spacing
-aside, both meet the cells alike, as each other's mirror image. A little jitter takes the order out of the distances;
-with more, dfsph would throw apart those that come too close, and time a spray.
+it is odd, where mueller on OpenCL takes longer a particle. A quarter of a spacing aside, both meet the cells alike, as
+each other's mirror image. A little jitter takes the order out of the distances; with more, dfsph would throw apart
+those that come too close, and time a spray.
 """
 
 from __future__ import annotations

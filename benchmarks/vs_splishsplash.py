@@ -5,8 +5,7 @@
 The peer runs in an environment of its own (splishsplash_run.py says how to make one). Prints both sides' wall time,
 steps, errors, front and centre of mass, and the ratio of wall times, theirs over ours: the median over the repeats. The
 largest density error of any particle is that of every step, of which the median, the 95th percentile and the largest
-are printed; the peer has no bound on it and reaches 9 % as the water strikes the corners, which is what ours aims to
-stay below unless told otherwise.
+are printed. The peer has no bound on it; ours has one where --largest-error asks for it.
 """
 
 from __future__ import annotations

@@ -175,8 +175,8 @@ class Simulation:
         set_push(self._core, acceleration, centre, radius)
 
     def step(self, progress: Callable[[float], object] | None = None) -> Frame:
-        """Simulates one frame. `progress` gets the finished share after each substep; what is true stops, None
-        goes on.
+        """Simulates one frame. `progress` gets the finished share after each substep and stops it by an
+        answer that is true; None goes on.
 
         A stop raises Interrupted; the next step finishes that frame. Raises Unstable, OutOfMemory, DeviceUnavailable,
         DeviceLost.

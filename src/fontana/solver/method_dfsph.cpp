@@ -52,9 +52,9 @@ class Dfsph : public Method {
         return 1.1 * density_error_tolerance(s.parameters) / (s.report.step.dt * s.report.step.dt);
     }
 
-    // What is left of pressure over long distances is seen where the water is calm, its fastest particle within a fifth
-    // of a spacing a step. It shoots off droplets where something strikes, by which particles crowd. And a solve that
-    // stops early leaves so much that it would add up, step after step, until a tall tank blew up.
+    // Errors of the pressure over long distances are seen where the water is calm, its fastest particle within a fifth
+    // of a spacing a step. They shoot off droplets where something strikes and particles crowd. And a loose solve leaves
+    // so much of them that they would add up, step after step, until a tall tank blew up.
     static bool long_waves_matter(const Substep& s) {
         constexpr double k_calm = 0.2, k_crowded = 0.05, k_loose = 0.002;
         return s.report.speed * s.report.step.dt < k_calm * sampling_distance(s.parameters) ||
@@ -93,9 +93,8 @@ class Dfsph : public Method {
         s.report.converged = state.done > 0.0f;
     }
 
-    // From u(1) to pressure_. The matrices of the coarse levels cost as much as two iterations, and most solves are
-    // done without them after three; so those that may give up do where eight more would not suffice at the pace they
-    // have.
+    // From u(1) to pressure_. The matrices of the coarse levels cost as much as two iterations, and most solves in a
+    // splash are done soon; so those that may give up do where eight more would not suffice at the pace they have.
     SolveState iterate_until_done(Substep& s, std::uint32_t most, bool may_give_up) {
         // A GPU would rather run an iteration too many, which changes nothing, than wait for an answer after each.
         const std::uint32_t poll = backend_.device().is_gpu ? 2 : 1;
