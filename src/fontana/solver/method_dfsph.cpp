@@ -53,8 +53,8 @@ class Dfsph : public Method {
     }
 
     // Errors of the pressure over long distances are seen where the water is calm, its fastest particle within a fifth
-    // of a spacing a step. They shoot off droplets where something strikes and particles crowd. And a loose solve leaves
-    // so much of them that they would add up, step after step, until a tall tank blew up.
+    // of a spacing a step. They shoot off droplets where something strikes and particles crowd. And a loose solve
+    // leaves so much of them that they would add up, step after step, until a tall tank blew up.
     static bool long_waves_matter(const Substep& s) {
         constexpr double k_calm = 0.2, k_crowded = 0.05, k_loose = 0.002;
         return s.report.speed * s.report.step.dt < k_calm * sampling_distance(s.parameters) ||
