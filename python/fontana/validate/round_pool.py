@@ -18,7 +18,7 @@ def scene(spacing: float) -> dict:
     return {
         "fluid": {"method": "dfsph", "particle_spacing": spacing, "viscosity": 10.0, "rest_density": REST_DENSITY},
         "forces": {"gravity": [0.0, -GRAVITY, 0.0]},
-        "solver": {"quality": "final"},
+        "solver": {"quality": "good"},
         "time": {"frame_rate": FRAME_RATE},
         "colliders": [floor(), {"type": "cylinder_inside", "radius": RADIUS} | RIM | SLIPPERY],
     }
