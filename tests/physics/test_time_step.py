@@ -12,7 +12,7 @@ from fontana import _core
         ("acoustic", {"fluid__pressure_constant": 1e4}, 0.0),
         ("viscosity", {"fluid__viscosity": 500.0}, 0.0),
         ("surface_tension", {"fluid__surface_tension": 2e3 / 2.0}, 0.0),
-        ("advection", {"fluid__pressure_constant": 1.0}, 50.0),
+        ("advection", {"fluid__pressure_constant": 1.0, "fluid__viscosity": 0.0}, 50.0),
         (
             "acceleration",
             {"fluid__pressure_constant": 1.0, "forces__gravity": (0, -5e4, 0), "time__timestep": 5e-4},
@@ -24,12 +24,60 @@ from fontana import _core
 )
 def test_the_limit_that_held_is_named(make_simulation, limit, parameters, speed):
     simulation = make_simulation("cpu", **({"forces__gravity": (0, 0, 0)} | parameters))
-    simulation.add_particles(np.zeros((1, 3), dtype=np.float32), np.array([[speed, 0, 0]], dtype=np.float32))
+    count = 2 if speed else 1  # who moves has company, a spacing away: alone it might go further
+    position = np.array([[0, 0, 0], [0.02, 0, 0]], dtype=np.float32)[:count]
+    simulation.add_particles(position, np.array([[speed, 0, 0]] * count, dtype=np.float32))
     report = simulation.step_frame()
     assert report.dt_limit == limit
     if limit != "frame":
         expected = getattr(simulation.estimate_limits(speed, 5e4), limit)
         assert 0.5 * expected < report.dt_min <= expected * (1 + 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("others", "colliders", "spacings"),
+    [
+        ([], [], 1.0),
+        ([[1.0, 0, 0]], [], 1.0),  # beyond the support radius of 2 spacings, 0.2 m
+        ([[0.15, 0, 0]], [], 0.4),
+        ([], [("plane_y", (0, -0.1, 0))], 0.4),
+    ],
+    ids=["alone", "another far away", "a neighbour", "a wall"],
+)
+def test_who_is_alone_may_travel_a_spacing(backend, make_simulation, others, colliders, spacings):
+    speed = 50.0
+    free = {"forces__gravity": (0, 0, 0), "fluid__viscosity": 0.0, "fluid__particle_spacing": 0.1}
+    simulation = make_simulation(backend, fluid__method="dfsph", time__timestep=0.02, **free)
+    for kind, centre in colliders:
+        simulation.add_collider(kind, centre=centre)
+    position = np.array([[0, 0, 0], *others], dtype=np.float32)
+    simulation.add_particles(position, np.full((len(position), 3), (speed, 0, 0), dtype=np.float32))
+    steps = []
+    simulation.step_frame(steps.append)
+    assert np.diff(steps).max() * 0.02 == pytest.approx(spacings * 0.1 / speed, rel=0.1)
+
+
+def test_a_droplet_meets_water_no_closer_than_a_spacing(make_simulation):
+    """It may travel that far while it is alone: then it is among neighbours, and steps are short enough for them."""
+    spacing, side = 0.1, 8
+    lattice = np.stack(np.meshgrid(*[np.arange(side)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) * spacing
+    free = {"forces__gravity": (0, 0, 0), "fluid__viscosity": 0.0, "fluid__particle_spacing": spacing}
+    nearest = []
+    for start in np.linspace(4.0, 5.0, 11):
+        simulation = make_simulation("cpu", fluid__method="dfsph", time__timestep=0.02, **free)
+        droplet = [0.35, 0.35, (side - 1 + start) * spacing]
+        velocity = np.zeros((len(lattice) + 1, 3), dtype=np.float32)
+        velocity[-1] = [0, 0, -30.0]
+        simulation.add_particles(np.array([*lattice, droplet], dtype=np.float32), velocity)
+        distances = []
+
+        def watch(_, distances=distances, simulation=simulation):
+            position = simulation.read("position")
+            distances.append(np.linalg.norm(position[:-1] - position[-1], axis=1).min() / spacing)
+
+        simulation.step_frame(watch)
+        nearest.append(next(distance for distance in distances if distance < 2.0))
+    assert min(nearest) > 0.95
 
 
 def test_substeps_add_up_to_the_frame(make_simulation, random_block):

@@ -18,6 +18,7 @@ typedef struct StepConstants {
     float viscosity_laplacian_scale;        // 45 / (pi H^6)
     float poly6_gradient_scale;             // 945 / (32 pi H^9)
     float kernel_scale;                     // 1/m^3, of the spline (spline.h)
+    float own_value;                        // 1/m^3, W(0) of the kernel that the density is summed with
     float gradient_scale;                   // of its gradient over the rest density, m^3/kg times 1/m^4 or 1/m^5
     float inverse_support_radius;           // 1/m
     float inverse_rest_density;             // m^3/kg

@@ -95,6 +95,11 @@ double support_radius(const Parameters& p) {
 
 double sampling_distance(const Parameters& p) { return 0.5 * support_radius(p); }
 
+// W(0) of the kernel that the density is summed with, 1/m^3.
+static double own_value(const Parameters& p, double support) {
+    return uses_spline(p) ? spline_scale(p, support) : smoothing_scales(support).poly6 * std::pow(support, 6);
+}
+
 double particle_mass(const Parameters& p) {
     if (p.fluid_particle_mass > 0.0) return p.fluid_particle_mass;
     return p.fluid_rest_density / lattice_sum(p);
@@ -132,9 +137,7 @@ fontana_derived derive(const Parameters& p) {
     derived.kinematic_viscosity = p.fluid_viscosity / p.fluid_rest_density;
     derived.speed_of_sound = is_stiff(p) ? std::sqrt(p.fluid_pressure_constant) : 0.0;
     derived.frame_duration = frame_duration(p);
-    const double own_value =
-        uses_spline(p) ? spline_scale(p, support) : smoothing_scales(support).poly6 * std::pow(support, 6);
-    derived.self_density = derived.particle_mass * own_value;
+    derived.self_density = derived.particle_mass * own_value(p, support);
     derived.particle_radius = 0.5 * sampling_distance(p) / p.time_simulation_scale;
     return derived;
 }
@@ -142,6 +145,7 @@ fontana_derived derive(const Parameters& p) {
 StepConstants make_constants(const Parameters& p) {
     const double support = support_radius(p);
     StepConstants c = spline_constants(p);
+    c.own_value = static_cast<float>(own_value(p, support));
     c.support_radius_squared = c.support_radius * c.support_radius;
     c.rest_density = static_cast<float>(p.fluid_rest_density);
     c.pressure_constant = static_cast<float>(p.fluid_pressure_constant);

@@ -46,9 +46,9 @@ StepExtremes measure_step(Backend& backend, Particles& particles, StepConstants 
     constants.particle_count = static_cast<std::uint32_t>(particles.count());
     const std::uint32_t lane_count = lanes_for(particles.count());
     const auto extremes = backend.allocate("extremes", lane_count * 16);
-    backend.launch(
-        Kernel::reduce_step, lane_count,
-        {constants, lane_count, particles.velocity(), particles.acceleration(), particles.density(), *extremes});
+    backend.launch(Kernel::reduce_step, lane_count,
+                   {constants, lane_count, particles.position(), particles.velocity(), particles.acceleration(),
+                    particles.density(), *extremes});
     StepExtremes step{};
     for (const float4& lane : lanes<float4>(backend, *extremes, lane_count)) {
         step.speed = larger(step.speed, static_cast<double>(lane.x));

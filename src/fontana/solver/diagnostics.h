@@ -12,8 +12,8 @@ struct Bounds {
 };
 Bounds measure_bounds(Backend& backend, Particles& particles, StepConstants constants);
 
-// The fastest and the most accelerated particle (m/s, m/s^2), and by how much the density is above rest. NaN if any
-// particle has a NaN.
+// The fastest particle, one that is alone counted for less (kernels/reduce.h), and the most accelerated (m/s, m/s^2);
+// and by how much the density is above rest. NaN if any particle has a NaN.
 struct StepExtremes {
     double speed, acceleration;
     double density_error_mean, density_error_max;

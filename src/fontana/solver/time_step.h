@@ -13,7 +13,7 @@ struct TimeStep {
 
 // Largest stable steps in seconds, cfl_factor included, for a fluid whose fastest particle has `speed` (m/s) and whose
 // most accelerated one `acceleration` (m/s^2). INFINITY where a limit does not apply.
-//   advection        0.4 d / speed
+//   advection        0.4 d / speed; d / speed for particles that are alone, whose speed comes here as 0.4 of it
 //   acceleration     0.25 sqrt(H / acceleration)                     (Monaghan 1992)
 //   acoustic         0.4 d / c, c^2 the pressure constant
 //   viscosity        0.1 d^2 density / viscosity

@@ -260,15 +260,16 @@ void relax(uint begin, uint end, const StepConstants& c, const float& relaxation
 }
 
 // Neighbouring lanes at once, so that memory is read in rows.
-void reduce_step(uint begin, uint end, const StepConstants& c, const uint& lane_count, const float4* velocity,
-                 const float4* acceleration, const float* density_in, float4* extremes) {
+void reduce_step(uint begin, uint end, const StepConstants& c, const uint& lane_count, const float4* position,
+                 const float4* velocity, const float4* acceleration, const float* density_in, float4* extremes) {
     constexpr uint k_lanes = 512;
     for (uint lane = begin; lane < end; lane += k_lanes) {
         const uint lanes = end - lane < k_lanes ? end - lane : k_lanes;
         float4 e[k_lanes] = {};
         for (uint first = lane; first < c.particle_count; first += lane_count)
             for (uint k = 0; k < lanes && first + k < c.particle_count; ++k)
-                e[k] = add_to_step(c, e[k], velocity[first + k], acceleration[first + k], density_in[first + k]);
+                e[k] = add_to_step(c, e[k], position[first + k].w, velocity[first + k], acceleration[first + k],
+                                   density_in[first + k]);
         for (uint k = 0; k < lanes; ++k) extremes[lane + k] = e[k];
     }
 }
