@@ -27,8 +27,8 @@
 extern "C" {
 #endif
 
-/* Raised when a struct or a function below changes its meaning. The file of the library carries it, libfontana.so.3:
- * the loader does not give a program a library of another one. */
+/* Raised when a struct or a function below changes its meaning. The file of the library carries it, libfontana.so.N, so
+ * that the loader gives no program a library of another one. */
 #define FONTANA_ABI_VERSION 3
 
 typedef enum fontana_status {
