@@ -32,6 +32,12 @@ std::vector<Device> devices() {
     return result;
 }
 
+Device choose_device(const std::string& backend) {
+    fontana_device device;
+    check(fontana_choose_device(backend.c_str(), &device));
+    return Device(device);
+}
+
 }  // namespace
 
 void bind_devices(nb::module_& m) {
@@ -53,6 +59,7 @@ void bind_devices(nb::module_& m) {
         .def_ro("reason", &Device::reason)
         .def_prop_ro("neighbors", [](const Device& device) { return words(device.neighbors); });
     m.def("devices", &devices);
+    m.def("choose_device", &choose_device, nb::arg("backend"));
 }
 
 }  // namespace fontana_python

@@ -15,14 +15,6 @@ def absent_backends(devices: Sequence[_core.Device]) -> dict[str, str]:
     return {device.backend: device.reason for device in devices if device.backend not in present}
 
 
-def chosen_device(devices: Sequence[_core.Device], backend: str = "auto") -> _core.Device | None:
-    """The first of these that solver.backend=`backend` takes; None if it takes none."""
-    here = [device for device in devices if device.available]
-    if backend == "auto":
-        return next((device for device in here if device.is_gpu), None) or chosen_device(devices, "cpu")
-    return next((device for device in here if device.backend == backend), None)
-
-
 def absent_neighbors(device: _core.Device, method: str) -> dict[str, str]:
     """The words of solver.neighbors that fluid.method=`method` cannot have on a device, each with the reason."""
     reasons = {}

@@ -1,4 +1,4 @@
-"""The error of a scene, and how a path or a value is written inside a sentence."""
+"""The errors that are not the library's, and how a path or a value is written inside a sentence."""
 
 from __future__ import annotations
 
@@ -10,6 +10,19 @@ from fontana import _core
 
 class SceneError(_core.BadInput):
     """A scene that cannot be used. The text is one sentence: where, what is wrong, and what was expected."""
+
+
+class BeyondLimit(_core.FontanaError):
+    """Something was measured beyond its limit: a result, not a defect. The text has what `beyond` says of each."""
+
+    def __init__(self, findings: Iterable[str]):
+        super().__init__("; ".join(findings))
+
+
+def beyond(case: str, figure: str, measured: float, limit: float, unit: str = "") -> str:
+    """What BeyondLimit tells of a figure."""
+    measured_text, limit_text = (f"{value:g} {unit}".strip() for value in (measured, limit))
+    return f"{case}: {figure} is {measured_text}, beyond its limit of {limit_text}"
 
 
 def path_text(path: Iterable[str | int]) -> str:

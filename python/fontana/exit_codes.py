@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 
 from fontana import _core
+from fontana.errors import BeyondLimit
 from fontana.runs.stop import StoppedError
 
 OK = 0
@@ -13,6 +14,7 @@ OUT_OF_MEMORY = 3
 UNSTABLE = 4
 DEVICE = 5
 OUTPUT = 6
+BEYOND_LIMIT = 7
 INTERNAL = 70
 INTERRUPTED = 128 + signal.SIGINT
 TERMINATED = 128 + signal.SIGTERM
@@ -25,6 +27,7 @@ Exit codes:
   4    unstable: the simulation cannot go on as it is
   5    device unavailable, or lost in mid-run
   6    output could not be written or read
+  7    validate, verify: a figure is beyond its limit
   70   a defect in Fontana
   130  stopped by Ctrl-C; the same command continues
   143  stopped by SIGTERM; the same command continues
@@ -39,6 +42,7 @@ _CODES: tuple[tuple[type[BaseException], int], ...] = (
     (_core.DeviceLost, DEVICE),
     (_core.IoError, OUTPUT),
     (OSError, OUTPUT),
+    (BeyondLimit, BEYOND_LIMIT),
 )
 
 

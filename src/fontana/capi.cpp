@@ -346,6 +346,16 @@ fontana_status fontana_list_devices(const fontana_device** devices, size_t* coun
     });
 }
 
+fontana_status fontana_choose_device(const char* backend, fontana_device* out) {
+    thread_local fontana::DeviceInfo chosen;
+    return guarded([&] {
+        require(backend, "backend");
+        require(out, "out");
+        chosen = fontana::choose_device(backend);
+        *out = view_of(chosen);
+    });
+}
+
 fontana_status fontana_device_in_use(fontana_simulation* simulation, fontana_device* out) {
     return guarded([&] {
         require(out, "out");

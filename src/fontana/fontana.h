@@ -27,7 +27,8 @@
 extern "C" {
 #endif
 
-/* Raised when a struct or a function below changes its meaning. */
+/* Raised when a struct or a function below changes its meaning. The file of the library carries it, libfontana.so.N, so
+ * that the loader gives no program a library of another one. */
 #define FONTANA_ABI_VERSION 3
 
 typedef enum fontana_status {
@@ -231,6 +232,9 @@ typedef struct fontana_device {
 
 /* Asks every backend anew; the list stays valid until the next call on this thread. */
 FONTANA_API fontana_status fontana_list_devices(const fontana_device** devices, size_t* count);
+/* The one in the list that solver.backend=`backend` takes with solver.device=0, "auto" too; it may be one that is not
+ * available. Starts nothing. Its strings live until the next call on this thread. */
+FONTANA_API fontana_status fontana_choose_device(const char* backend, fontana_device* out);
 /* Starts the device if none runs yet. */
 FONTANA_API fontana_status fontana_device_in_use(fontana_simulation*, fontana_device* out);
 

@@ -99,6 +99,11 @@ def test_the_cpu_is_refused(make_simulation):
         make_simulation("cpu", "tiles").device()
 
 
+def test_a_gpu_has_every_scheme(gpu):
+    listed = {device.neighbors for device in _core.devices() if device.backend == gpu and device.available}
+    assert listed == {parameters()["solver.neighbors"].choices}
+
+
 def test_a_device_starts_with_the_schemes_that_it_lists_alone(backend, make_simulation):
     listed = next(device.neighbors for device in _core.devices() if device.backend == backend and device.available)
     assert "grid" in listed

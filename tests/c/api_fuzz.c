@@ -315,10 +315,11 @@ static void files(Fuzzer* f) {
 
 static void device(Fuzzer* f) {
     fontana_simulation* s = any_handle(f);
-    fontana_device in_use;
+    fontana_device in_use, chosen;
     const fontana_kernel_profile* rows = NULL;
     size_t count = 0;
     double speed;
+    CALL(f, choose_device, MAYBE(f, any_text(f)), MAYBE(f, &chosen));
     CALL(f, device_in_use, s, MAYBE(f, &in_use));
     CALL(f, read_profile, s, MAYBE(f, &rows), MAYBE(f, &count));
     CALL(f, measure_copy, s, below(f, 99), MAYBE(f, &speed));

@@ -35,6 +35,12 @@ void test_tables(void) {
         CHECK(!devices[k].available || strstr(devices[k].neighbors, "grid"));
     }
     CHECK(count > 0);
+    fontana_device chosen;
+    OK(fontana_choose_device("cpu", &chosen));
+    CHECK(chosen.available && strcmp(chosen.backend, "cpu") == 0);
+    BAD(fontana_choose_device("gpu", &chosen), "no backend 'gpu': expected auto, cpu, cuda or opencl");
+    BAD(fontana_choose_device(NULL, &chosen), "backend must not be null");
+    BAD(fontana_choose_device("auto", NULL), "out must not be null");
     BAD(fontana_list_devices(NULL, &count), "devices must not be null");
     BAD(fontana_list_devices(&devices, NULL), "count must not be null");
 

@@ -1,5 +1,6 @@
 """The shared library as a plugin sees it: its symbols, its header, the C example."""
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -22,6 +23,15 @@ def test_only_fontana_symbols_are_exported():
     names = {line.split()[-1] for line in listing.stdout.splitlines()}
     foreign = {name for name in names if not name.startswith("fontana_")}
     assert names and not foreign, sorted(foreign)[:10]
+
+
+def test_the_file_is_named_by_the_number_of_its_interface():
+    """So that a plugin built against another one is refused as it is loaded, and does not read structs that differ."""
+    header = (PACKAGE / "include" / "fontana.h").read_text(encoding="utf-8")
+    number = re.search(r"^#define FONTANA_ABI_VERSION (\d+)$", header, re.MULTILINE)[1]
+    dynamic = subprocess.run(["readelf", "-d", library()], capture_output=True, text=True, check=True).stdout
+    assert f"[libfontana.so.{number}]" in dynamic
+    assert library().name == f"libfontana.so.{number}"
 
 
 def test_no_vendor_library_is_linked():

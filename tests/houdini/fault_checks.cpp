@@ -60,6 +60,17 @@ void a_value_out_of_bounds() {
     CHECK(hash_at(scene, 2) == played(2).back());
 }
 
+// Tiles are on the menu whatever the backend.
+void a_scheme_that_the_backend_lacks() {
+    BlockScene scene;
+    set_int(*scene.solver, "solver_neighbors", 1);
+    hdk_double::cook(*scene.solver, 2);
+    CHECK(scene.solver->error() == UT_ERROR_ABORT);
+    CHECK(contains(sentences(*scene.solver), "solver.neighbors=tiles is a choice of"));
+    set_int(*scene.solver, "solver_neighbors", 0);
+    CHECK(hash_at(scene, 2) == played(2).back());
+}
+
 // The points that are left, in a detail with gaps and in one without.
 void deleted_points() {
     hdk_double::Network network;
@@ -136,6 +147,7 @@ void check_faults() {
     an_empty_input_is_an_empty_frame();
     a_position_that_is_no_number();
     a_value_out_of_bounds();
+    a_scheme_that_the_backend_lacks();
     deleted_points();
     an_interrupted_jump_goes_on();
     an_interrupt_before_the_first_frame();

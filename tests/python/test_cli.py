@@ -11,6 +11,8 @@ from command_line import error_line
 
 import fontana as package
 import fontana.cli.verify as verify_module
+from fontana import exit_codes
+from fontana.errors import BeyondLimit
 
 COMMANDS = ["run", "resume", "devices", "verify", "bench", "scenes", "schema", "explain", "fluids"]
 
@@ -26,7 +28,7 @@ def test_the_main_help_tells_commands_and_exit_codes(fontana) -> None:
     text = fontana("--help").stdout
     for command in COMMANDS:
         assert f"\n  {command} " in text
-    for code in (0, 2, 3, 4, 5, 6, 70, 130, 143):
+    for code in (0, 2, 3, 4, 5, 6, 7, 70, 130, 143):
         assert f"\n    {code} " in text
     assert package.version() in fontana("--version").stdout
     assert "..." not in text.partition("Commands:")[2], "a summary is cut"
@@ -163,11 +165,17 @@ def test_verify_takes_methods(fontana) -> None:
 
 
 @pytest.mark.parametrize(
-    ("method", "name", "change"),
-    [("mueller", "density", 2.4e-7), ("mueller", "acceleration", 1e-3), ("dfsph", "velocity", 1e-3)],
+    ("method", "name", "change", "finding"),
+    [
+        ("mueller", "density", 2.4e-7, "not the bits of the first device"),
+        ("mueller", "acceleration", 1e-3, r"the disagreement of acceleration is [\d.]+, beyond its limit of 2e-05"),
+        ("dfsph", "velocity", 1e-3, r"the disagreement of velocity is [\d.]+, beyond its limit of 0.0001"),
+    ],
 )
-def test_verify_notices_a_last_bit_in_strict_and_a_small_error_elsewhere(monkeypatch, method, name, change) -> None:
-    """The results of the schemes are those of the library, but for one number of all."""
+def test_verify_notices_a_last_bit_in_strict_and_a_small_error_elsewhere(
+    monkeypatch, capsys, method, name, change, finding
+) -> None:
+    """The results of the schemes are those of the library, but for one number of all. A result, not a defect."""
     plain = verify_module._results
     calls = []
 
@@ -181,8 +189,11 @@ def test_verify_notices_a_last_bit_in_strict_and_a_small_error_elsewhere(monkeyp
     monkeypatch.setattr(verify_module, "_results", changed)
     cpu = next(device for device in package.devices() if device.backend == "cpu")
     monkeypatch.setattr(verify_module, "_numbered", lambda devices: [(cpu, 0)])
-    rows, _ = verify_module.compare_all([method])
-    assert [row["passed"] for row in rows] == [False, True, True, True]
+    with pytest.raises(BeyondLimit, match=f"^{method}/cpu/0/all-pairs/strict: {finding}") as raised:
+        verify_module.verify.callback((method,), as_json=True)
+    assert exit_codes.exit_code(raised.value) == 7
+    assert exit_codes.sentence(raised.value) == str(raised.value)
+    assert [row["passed"] for row in json.loads(capsys.readouterr().out)["rows"]] == [False, True, True, True]
     assert calls[0] == calls[1]
 
 

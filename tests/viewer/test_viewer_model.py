@@ -10,7 +10,6 @@ import pytest
 from small_scenes import DROP
 
 from fontana import _core
-from fontana.backends import chosen_device
 from fontana.gl.camera import Camera
 from fontana.scene import load_scene
 from fontana.tables import parameters
@@ -83,7 +82,7 @@ def test_a_key_goes_round_the_schemes(model, opencl_device):
     assert model.absent_choices("solver.neighbors") == {}
     assert neighbors_by_key(model, "opencl", "dfsph") == ["all-pairs", "grid"]
     assert "choice of fluid.method=mueller" in model.absent_choices("solver.neighbors")["tiles"]
-    chosen = chosen_device(_core.devices())
+    chosen = _core.choose_device("auto")
     assert ("tiles" in neighbors_by_key(model, "auto", "mueller")) == ("tiles" in chosen.neighbors)
 
 

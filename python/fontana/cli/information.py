@@ -11,7 +11,6 @@ from rich.console import Console
 from rich.table import Table
 
 from fontana import _core
-from fontana.backends import chosen_device
 from fontana.errors import SceneError, clean
 from fontana.fluid_table import fluids as fluid_table
 from fontana.reader import read_json
@@ -74,9 +73,9 @@ def devices(as_json: bool) -> None:
     for device in found:
         if not device.available:
             click.echo(f"not available: {device.backend}{f' ({device.name})' if device.name else ''}: {device.reason}")
-    if chosen := chosen_device(found):
-        why = "the first GPU" if chosen.is_gpu else "there is no GPU"
-        click.echo(f"--backend auto takes {chosen.backend} ({chosen.name}): {why}")
+    chosen = _core.choose_device("auto")
+    why = "the first GPU" if chosen.is_gpu else "there is no GPU"
+    click.echo(f"--backend auto takes {chosen.backend} ({chosen.name}): {why}")
 
 
 @click.command()

@@ -11,15 +11,11 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-from fontana import _core
 from fontana.cli.information import print_table
 from fontana.cli.usage import Choice
+from fontana.errors import BeyondLimit, beyond
 from fontana.tables import parameters
 from fontana.validate import SIZES, Session, case_names, find_case
-
-
-class NotKept(_core.InternalError):
-    """A figure is beyond its limit."""
 
 
 @click.command(short_help="Compare with experiments and closed forms.")
@@ -67,9 +63,14 @@ def validate(
     results = _run(session, resume, as_json)
     if as_json:
         click.echo(json.dumps({"cases": results}, indent=1))
-    beyond = [f"{result['case']}: {row['name']}" for result in results for row in result["figures"] if not row["kept"]]
-    if beyond:
-        raise NotKept(f"beyond the limit: {'; '.join(beyond)}")
+    findings = [
+        beyond(result["case"], row["name"], row["value"], row["limit"], row["unit"])
+        for result in results
+        for row in result["figures"]
+        if not row["kept"]
+    ]
+    if findings:
+        raise BeyondLimit(findings)
 
 
 def _run(session: Session, resume: bool, as_json: bool) -> list[dict]:

@@ -8,13 +8,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from fontana import _core
-from fontana.backends import absent_backends, absent_neighbors, chosen_device
+from fontana.backends import absent_backends, absent_neighbors
 from fontana.exit_codes import sentence
 from fontana.formats import particle_radius
 from fontana.gl.frame_data import FrameData
 from fontana.runs.runner import frame_record
 from fontana.scene import Scene
 from fontana.simulation import set_push
+from fontana.tables import parameters
 from fontana.viewer.orders import Orders, Push
 from fontana.viewer.rates import SchemeRates
 from fontana.viewer.settings import FROM_THE_START, Settings, surface
@@ -47,6 +48,7 @@ class LiveSource:
         self.settings = Settings(scene)
         self.rates = SchemeRates()
         self._devices = _core.devices()
+        self._chosen = {word: _core.choose_device(word) for word in parameters()["solver.backend"].choices}
         self.frames_per_second = float("inf")  # at most
         self._condition = threading.Condition()
         self._orders = Orders(is_playing=is_playing)
@@ -88,8 +90,8 @@ class LiveSource:
         """Words of a parameter that the rest of the settings or this machine cannot have, each with the reason."""
         if path == "solver.backend":
             return absent_backends(self._devices)
-        device = chosen_device(self._devices, self.settings.get("solver.backend"))
-        if path == "solver.neighbors" and device:
+        device = self._chosen[self.settings.get("solver.backend")]
+        if path == "solver.neighbors" and device.available:
             return absent_neighbors(device, self.settings.get("fluid.method"))
         return {}
 

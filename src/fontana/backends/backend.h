@@ -166,7 +166,9 @@ class Backend {
 
 // Every device of every backend, and a line for each backend that has none, with the reason.
 std::vector<DeviceInfo> list_devices();
-// name: "auto", "cpu", "cuda", "opencl".
-std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options);
+// name: "auto", which is the first GPU that is available, else the CPU; "cpu", "cuda", "opencl".
+std::unique_ptr<Backend> make_backend(const std::string& name, BackendOptions options);
+// The device of that backend with options.device = 0, as list_devices has it.
+DeviceInfo choose_device(const std::string& name);
 
 }  // namespace fontana

@@ -26,18 +26,28 @@ const std::vector<BackendEntry>& backends() {
     return entries;
 }
 
-std::unique_ptr<Backend> make_first_gpu(BackendOptions options) {
+struct Choice {
+    const BackendEntry& backend;
+    int device;  // index within it
+};
+
+const BackendEntry& find_backend(const std::string& name) {
+    for (const BackendEntry& entry : backends())
+        if (name == entry.name) return entry;
+    fail(FONTANA_BAD_INPUT, "no backend '" + name + "': expected auto, cpu, cuda or opencl");
+}
+
+// "auto" asks no backend behind the one that it takes: starting a vendor's library costs time.
+Choice choose(const std::string& name, int device) {
+    if (name != "auto") return {find_backend(name), device};
     for (const BackendEntry& entry : backends()) {
         int index = 0;
-        for (const DeviceInfo& device : entry.list()) {
-            if (device.available && device.is_gpu) {
-                options.device = index;
-                return entry.make(options);
-            }
+        for (const DeviceInfo& found : entry.list()) {
+            if (found.available && found.is_gpu) return {entry, index};
             ++index;
         }
     }
-    return nullptr;
+    return {find_backend("cpu"), 0};
 }
 
 std::unique_ptr<Backend> require_tiles(std::unique_ptr<Backend> backend, const BackendOptions& options) {
@@ -73,14 +83,15 @@ std::vector<DeviceInfo> list_devices() {
     return devices;
 }
 
-std::unique_ptr<Backend> make_backend(const std::string& name, const BackendOptions& options) {
-    if (name == "auto") {
-        std::unique_ptr<Backend> gpu = make_first_gpu(options);
-        return require_tiles(gpu ? std::move(gpu) : make_cpu_backend(options), options);
-    }
-    for (const BackendEntry& entry : backends())
-        if (name == entry.name) return require_tiles(entry.make(options), options);
-    fail(FONTANA_BAD_INPUT, "no backend '" + name + "': expected auto, cpu, cuda or opencl");
+DeviceInfo choose_device(const std::string& name) {
+    const Choice choice = choose(name, 0);
+    return choice.backend.list().at(static_cast<std::size_t>(choice.device));
+}
+
+std::unique_ptr<Backend> make_backend(const std::string& name, BackendOptions options) {
+    const Choice choice = choose(name, options.device);
+    options.device = choice.device;
+    return require_tiles(choice.backend.make(options), options);
 }
 
 }  // namespace fontana

@@ -6,6 +6,7 @@
 #include "backends/cuda/cuda_backend.h"
 #include "backends/cuda/cuda_error.h"
 #include "backends/cuda/nvrtc_api.h"
+#include "backends/gpu/tiles.h"
 
 namespace fontana {
 namespace {
@@ -101,7 +102,7 @@ CudaDevice describe(int index) {
     device.group_size = static_cast<std::size_t>(std::clamp(most_threads, 1, k_group_size));
     DeviceInfo& info = device.info;
     info.backend = "cuda";
-    info.neighbors = "grid|tiles|all-pairs";
+    info.neighbors = k_gpu_neighbors;
     info.name = query.name();
     info.memory_bytes = query.memory_bytes();
     info.compute_units = static_cast<std::uint32_t>(query.attribute(CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT));

@@ -1,9 +1,11 @@
-// Which kernels have a second loop, in tiles.inl.
+// The neighbour schemes of a GPU, and which kernels have a second loop for tiles, in tiles.inl.
 #pragma once
 
 #include <string>
 
 namespace fontana {
+
+constexpr const char* k_gpu_neighbors = "grid|tiles|all-pairs";  // DeviceInfo::neighbors
 
 // The function of the device program that a kernel is launched as.
 inline std::string function_of(const std::string& kernel, bool tiles) {

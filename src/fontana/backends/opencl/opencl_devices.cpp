@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "backends/gpu/tiles.h"
 #include "backends/opencl/opencl_backend.h"
 #include "backends/opencl/opencl_error.h"
 
@@ -123,7 +124,7 @@ OpenClDevice describe(cl_platform_id platform, cl_device_id id) {
     device.rounds_divisions_correctly = (rounding & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
     DeviceInfo& info = device.info;
     info.backend = "opencl";
-    info.neighbors = "grid|tiles|all-pairs";
+    info.neighbors = k_gpu_neighbors;
     info.name = query.text(CL_DEVICE_NAME);
     info.driver = platform_text(platform, CL_PLATFORM_NAME) + ", driver " + query.text(CL_DRIVER_VERSION);
     info.memory_bytes = query.value<cl_ulong>(CL_DEVICE_GLOBAL_MEM_SIZE);
