@@ -122,6 +122,9 @@ def test_a_figure_beyond_its_limit_is_a_failure(tmp_path):
     (sentence,) = done.stderr.splitlines()
     finding = r"koshizuka-oka: tip, mean error, of the column's width is [\d.]+ %, beyond its limit of 5 %"
     assert re.match(f"fontana: {finding}(; |$)", sentence), sentence
+    again = fontana("validate", "koshizuka-oka", "--method", "mueller", "--json", folder=tmp_path, code=7)
+    assert json.loads(again.stdout)["cases"], "one document, whatever it says"
+    assert again.stderr == done.stderr
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")

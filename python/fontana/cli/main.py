@@ -19,6 +19,7 @@ from fontana.cli.usage import usage_sentence
 from fontana.cli.validate import validate
 from fontana.cli.verify import verify
 from fontana.cli.view import view
+from fontana.errors import BeyondLimit
 
 _HELP = f"""Fontana simulates fluids for visual effects with particles (SPH), on the CPU and on the GPU.
 
@@ -70,11 +71,12 @@ def _report(error: BaseException) -> int:
         error = KeyboardInterrupt()
     if os.environ.get("FONTANA_DEBUG"):
         traceback.print_exception(error)
-    return _say(exit_codes.exit_code(error), exit_codes.sentence(error))
+    is_printed = isinstance(error, BeyondLimit)  # with the results, which are one document
+    return _say(exit_codes.exit_code(error), exit_codes.sentence(error), as_json=not is_printed)
 
 
-def _say(code: int, text: str) -> int:
-    if "--json" in sys.argv:
+def _say(code: int, text: str, as_json: bool = True) -> int:
+    if as_json and "--json" in sys.argv:
         print(json.dumps({"event": "error", "code": code, "message": text}), flush=True)
     print(f"fontana: {text}", file=sys.stderr)
     return code

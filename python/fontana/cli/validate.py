@@ -44,7 +44,7 @@ def validate(
     """Run cases whose answer is known, from experiments, closed forms and other methods, and compare.
 
     Without a CASE all of them. Each writes its figures, curves, machine and commit to --out as JSON, and a plot beside
-    it. All at full size take some ten minutes; after Ctrl-C what is finished is there, and --resume goes on.
+    it. All at full size take a minute or two; after Ctrl-C what is finished is there, and --resume goes on.
 
     \b
     Examples:
