@@ -5,14 +5,15 @@
 
 #include "step_constants.h"
 
-// One particle more for max |v|^2, max |a|^2, sum and max of the density error. A NaN wins over every number, so that
-// it is not lost.
+// A NaN wins over every number, whichever of the two it is, so that it is not lost.
+FN float max_or_nan(float a, float b) { return a < b || b != b ? b : a; }
+
+// One particle more for max |v|^2, max |a|^2, sum and max of the density error.
 FN float4 add_to_step(const StepConstants c, float4 e, float4 v, float4 a, float density) {
     const float v_squared = v.x * v.x + v.y * v.y + v.z * v.z;
     const float a_squared = a.x * a.x + a.y * a.y + a.z * a.z;
     const float error = max_f(0.0f, density * c.inverse_rest_density - 1.0f);
-    return MAKE_FLOAT4(v_squared <= e.x ? e.x : v_squared, a_squared <= e.y ? e.y : a_squared, e.z + error,
-                       max_f(e.w, error));
+    return MAKE_FLOAT4(max_or_nan(e.x, v_squared), max_or_nan(e.y, a_squared), e.z + error, max_or_nan(e.w, error));
 }
 
 // Per lane: those four.
@@ -56,8 +57,7 @@ KERNEL void reduce_diagnostics(THREAD_ARG const StepConstants c, const uint lane
         const float v_squared = v.x * v.x + v.y * v.y + v.z * v.z;
         const float error = max_f(0.0f, density_in[i] / c.rest_density - 1.0f);
         m = MAKE_FLOAT4(m.x + x.w * x.x, m.y + x.w * x.y, m.z + x.w * x.z, m.w + x.w);
-        d = MAKE_FLOAT4(d.x + 0.5f * x.w * v_squared, d.y + error, max_f(d.z, error),
-                        v_squared <= d.w ? d.w : v_squared);
+        d = MAKE_FLOAT4(d.x + 0.5f * x.w * v_squared, d.y + error, max_or_nan(d.z, error), max_or_nan(d.w, v_squared));
     }
     moment[lane] = m;
     measure[lane] = d;
