@@ -10,7 +10,7 @@ namespace {
 // Few enough to read back and add up at once, though a large GPU runs more threads. The shape of every sum depends on
 // the particle count alone.
 std::uint32_t lanes_for(std::size_t particle_count) {
-    return static_cast<std::uint32_t>(std::clamp<std::size_t>(particle_count / 4, 1, 4096));
+    return static_cast<std::uint32_t>(std::clamp<std::size_t>(particle_count / 4, 1, k_most_lanes));
 }
 
 template <typename T>
@@ -62,12 +62,11 @@ StepExtremes measure_step(Backend& backend, Particles& particles, StepConstants 
     return step;
 }
 
-double mean_of(Backend& backend, const Buffer& values, std::size_t count) {
+double mean_of(Backend& backend, const Buffer& values, std::size_t count, Buffer& sums) {
     const std::uint32_t lane_count = lanes_for(count);
-    const auto sums = backend.allocate("sums", lane_count * 4);
-    backend.launch(Kernel::reduce_sum, lane_count, {static_cast<std::uint32_t>(count), lane_count, values, *sums});
+    backend.launch(Kernel::reduce_sum, lane_count, {static_cast<std::uint32_t>(count), lane_count, values, sums});
     double total = 0.0;
-    for (const float sum : lanes<float>(backend, *sums, lane_count)) total += static_cast<double>(sum);
+    for (const float sum : lanes<float>(backend, sums, lane_count)) total += static_cast<double>(sum);
     return total / static_cast<double>(count);
 }
 
