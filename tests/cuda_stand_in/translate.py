@@ -229,6 +229,8 @@ def compute(kernel: Kernel, opcode: str, operands: list[str]) -> str | None:
     if found := re.fullmatch(r"setp\.(\w+)\.(\w+)", opcode):
         comparison, kind = found.groups()
         a, b = (operand(kernel, text, kind) for text in operands[1:])
+        if comparison == "nan":
+            return f"{operands[0][1:]} = std::isunordered({a}, {b});"
         if comparison in UNORDERED:
             return f"{operands[0][1:]} = !({a} {UNORDERED[comparison]} {b});"
         return f"{operands[0][1:]} = {a} {COMPARISONS[comparison]} {b};"

@@ -100,6 +100,30 @@ def test_a_run_resumes_in_the_middle_of_a_frame(device, method, tmp_path):
     assert state(untouched) == state(original) == state(resumed)
 
 
+@pytest.mark.parametrize("is_blown_up", [False, True])
+@pytest.mark.parametrize("method", METHODS)
+def test_what_went_on_leaves_no_trace_in_who_goes_back(device, method, is_blown_up, tmp_path):
+    """Back to fewer particles: the arrays still hold the others, whose numbers may be none any more."""
+    path = str(tmp_path / "state.checkpoint")
+    returned, untouched = build_scene(*device, method), build_scene(*device, method)
+    step(untouched, 1)
+    step(returned, 1)
+    returned.save_checkpoint(path)
+    step(returned, 2)
+    returned.set_force(np.full((returned.particle_count, 3), 3e38 if is_blown_up else 50.0, dtype=np.float32))
+    if is_blown_up:
+        with pytest.raises(_core.Unstable):
+            returned.step_frame()
+    else:
+        returned.step_frame()
+    assert returned.particle_count > 2 * untouched.particle_count
+    returned.load_checkpoint(path)
+    for _ in range(2):
+        expected, found = untouched.step_frame(), returned.step_frame()
+        assert (found.substeps, found.dt_min, found.dt_max) == (expected.substeps, expected.dt_min, expected.dt_max)
+        assert state(returned) == state(untouched)
+
+
 def test_strict_runs_resume_on_another_device(device, tmp_path):
     path = str(tmp_path / "state.checkpoint")
     original = build_scene("cpu", 1, solver__precision="strict")

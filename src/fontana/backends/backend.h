@@ -100,8 +100,9 @@ class CompiledKernel {
     virtual ~CompiledKernel() = default;
     virtual void launch(std::size_t count, KernelArguments arguments) = 0;
 };
-// What a launch goes through, which is not its thread count where a thread takes several: the first argument of every
-// kernel of the core says it, as a count or in the step's constants. 0 for another's that does not.
+
+// What a launch goes through, which is not its thread count where a thread takes several: the first argument of a
+// kernel says it, as a count or in the step's constants. 0 where it is neither, as with the levels of kernels/coarse.h.
 inline std::uint64_t element_count(KernelArguments arguments) {
     if (arguments.size() == 0) return 0;
     const KernelArgument& first = *arguments.begin();

@@ -5,6 +5,9 @@
 
 #include "step_constants.h"
 
+// A NaN wins over every number, whichever of the two it is, so that it is not lost.
+FN float max_or_nan(float a, float b) { return a < b || b != b ? b : a; }
+
 // What a particle's speed counts for in the length of a step. One that is alone, with neither a neighbour nor a wall
 // within the support radius of two spacings, may travel a whole spacing and meets nobody closer than that, where others
 // may travel 0.4 of one. Otherwise a single droplet would slow down all of a splash.
@@ -12,15 +15,13 @@ FN float travel_weight(const StepConstants c, float mass, float density) {
     return density <= 1.01f * mass * c.own_value ? 0.4f : 1.0f;
 }
 
-// One particle more for max |weight v|^2, max |a|^2, sum and max of the density error. A NaN wins over every number, so
-// that it is not lost.
+// One particle more for max |weight v|^2, max |a|^2, sum and max of the density error.
 FN float4 add_to_step(const StepConstants c, float4 e, float mass, float4 v, float4 a, float density) {
     const float weight = travel_weight(c, mass, density);
     const float v_squared = weight * weight * (v.x * v.x + v.y * v.y + v.z * v.z);
     const float a_squared = a.x * a.x + a.y * a.y + a.z * a.z;
     const float error = max_f(0.0f, density * c.inverse_rest_density - 1.0f);
-    return MAKE_FLOAT4(v_squared <= e.x ? e.x : v_squared, a_squared <= e.y ? e.y : a_squared, e.z + error,
-                       max_f(e.w, error));
+    return MAKE_FLOAT4(max_or_nan(e.x, v_squared), max_or_nan(e.y, a_squared), e.z + error, max_or_nan(e.w, error));
 }
 
 // Per lane: those four.
@@ -64,8 +65,7 @@ KERNEL void reduce_diagnostics(THREAD_ARG const StepConstants c, const uint lane
         const float v_squared = v.x * v.x + v.y * v.y + v.z * v.z;
         const float error = max_f(0.0f, density_in[i] / c.rest_density - 1.0f);
         m = MAKE_FLOAT4(m.x + x.w * x.x, m.y + x.w * x.y, m.z + x.w * x.z, m.w + x.w);
-        d = MAKE_FLOAT4(d.x + 0.5f * x.w * v_squared, d.y + error, max_f(d.z, error),
-                        v_squared <= d.w ? d.w : v_squared);
+        d = MAKE_FLOAT4(d.x + 0.5f * x.w * v_squared, d.y + error, max_or_nan(d.z, error), max_or_nan(d.w, v_squared));
     }
     moment[lane] = m;
     measure[lane] = d;

@@ -62,10 +62,10 @@ double lattice_sum(const Parameters& p) {
                     [&](double r) { sum += static_cast<double>(kernel_value(c, static_cast<float>(r))); });
         return sum;
     }
-    const auto h2 = static_cast<float>(support * support);
-    sum = static_cast<double>(poly6(0.0f, h2));
+    const auto support_squared = static_cast<float>(support * support);
+    sum = static_cast<double>(poly6(0.0f, support_squared));
     for_lattice(p.fluid_particle_spacing, support,
-                [&](double r) { sum += static_cast<double>(poly6(static_cast<float>(r * r), h2)); });
+                [&](double r) { sum += static_cast<double>(poly6(static_cast<float>(r * r), support_squared)); });
     return smoothing_scales(support).poly6 * sum;
 }
 
@@ -83,10 +83,10 @@ void set_push(const Parameters& p, StepConstants& c) {
 
 }  // namespace
 
-SmoothingScales smoothing_scales(double h) {
-    const double h3 = h * h * h, h6 = h3 * h3, h9 = h6 * h3;
-    return {315.0 / (64.0 * k_pi * h9), 945.0 / (32.0 * k_pi * h9), 15.0 / (k_pi * h6),
-            45.0 / (k_pi * h6),         15.0 / (2.0 * k_pi * h3),   45.0 / (k_pi * h6)};
+SmoothingScales smoothing_scales(double support) {
+    const double cube = support * support * support, sixth = cube * cube, ninth = sixth * cube;  // powers of H
+    return {315.0 / (64.0 * k_pi * ninth), 945.0 / (32.0 * k_pi * ninth), 15.0 / (k_pi * sixth),
+            45.0 / (k_pi * sixth),         15.0 / (2.0 * k_pi * cube),    45.0 / (k_pi * sixth)};
 }
 
 double support_radius(const Parameters& p) {

@@ -7,10 +7,10 @@
 namespace fontana {
 namespace {
 
-// Enough to fill a GPU, few enough to read back and add up at once. The shape of every sum depends on the particle
-// count alone.
+// Few enough to read back and add up at once, though a large GPU runs more threads. The shape of every sum depends on
+// the particle count alone.
 std::uint32_t lanes_for(std::size_t particle_count) {
-    return static_cast<std::uint32_t>(std::clamp<std::size_t>(particle_count / 4, 1, 4096));
+    return static_cast<std::uint32_t>(std::clamp<std::size_t>(particle_count / 4, 1, k_most_lanes));
 }
 
 template <typename T>
@@ -20,8 +20,8 @@ std::vector<T> lanes(Backend& backend, const Buffer& buffer, std::uint32_t lane_
     return values;
 }
 
-// NaN wins, as in the kernels.
-double larger(double a, double b) { return b <= a ? a : b; }
+// As in the kernels (kernels/reduce.h).
+double max_or_nan(double a, double b) { return a < b || std::isnan(b) ? b : a; }
 
 }  // namespace
 
@@ -51,10 +51,10 @@ StepExtremes measure_step(Backend& backend, Particles& particles, StepConstants 
                     particles.density(), *extremes});
     StepExtremes step{};
     for (const float4& lane : lanes<float4>(backend, *extremes, lane_count)) {
-        step.speed = larger(step.speed, static_cast<double>(lane.x));
-        step.acceleration = larger(step.acceleration, static_cast<double>(lane.y));
+        step.speed = max_or_nan(step.speed, static_cast<double>(lane.x));
+        step.acceleration = max_or_nan(step.acceleration, static_cast<double>(lane.y));
         step.density_error_mean += static_cast<double>(lane.z);
-        step.density_error_max = larger(step.density_error_max, static_cast<double>(lane.w));
+        step.density_error_max = max_or_nan(step.density_error_max, static_cast<double>(lane.w));
     }
     step.speed = std::sqrt(step.speed);
     step.acceleration = std::sqrt(step.acceleration);
@@ -62,12 +62,11 @@ StepExtremes measure_step(Backend& backend, Particles& particles, StepConstants 
     return step;
 }
 
-double mean_of(Backend& backend, const Buffer& values, std::size_t count) {
+double mean_of(Backend& backend, const Buffer& values, std::size_t count, Buffer& sums) {
     const std::uint32_t lane_count = lanes_for(count);
-    const auto sums = backend.allocate("sums", lane_count * 4);
-    backend.launch(Kernel::reduce_sum, lane_count, {static_cast<std::uint32_t>(count), lane_count, values, *sums});
+    backend.launch(Kernel::reduce_sum, lane_count, {static_cast<std::uint32_t>(count), lane_count, values, sums});
     double total = 0.0;
-    for (const float sum : lanes<float>(backend, *sums, lane_count)) total += static_cast<double>(sum);
+    for (const float sum : lanes<float>(backend, sums, lane_count)) total += static_cast<double>(sum);
     return total / static_cast<double>(count);
 }
 
@@ -97,8 +96,8 @@ Diagnostics measure(Backend& backend, Particles& particles, StepConstants consta
     for (const float4& lane : lanes<float4>(backend, *value, lane_count)) {
         d.kinetic_energy += static_cast<double>(lane.x);
         d.density_error_mean += static_cast<double>(lane.y);
-        d.density_error_max = larger(d.density_error_max, static_cast<double>(lane.z));
-        d.max_speed = larger(d.max_speed, static_cast<double>(lane.w));
+        d.density_error_max = max_or_nan(d.density_error_max, static_cast<double>(lane.z));
+        d.max_speed = max_or_nan(d.max_speed, static_cast<double>(lane.w));
     }
     d.density_error_mean /= static_cast<double>(particles.count());
     d.max_speed = std::sqrt(d.max_speed);

@@ -20,8 +20,9 @@ struct StepExtremes {
 };
 StepExtremes measure_step(Backend& backend, Particles& particles, StepConstants constants);
 
-// Of `count` values on the device.
-double mean_of(Backend& backend, const Buffer& values, std::size_t count);
+// Of `count` values on the device. `sums` has room for k_most_lanes floats and is written to.
+constexpr std::size_t k_most_lanes = 4096;
+double mean_of(Backend& backend, const Buffer& values, std::size_t count, Buffer& sums);
 
 struct Diagnostics {
     double mass;                // kg

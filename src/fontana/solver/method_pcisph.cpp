@@ -18,12 +18,12 @@ class Pcisph : public Method {
     explicit Pcisph(Backend& backend) : backend_(backend), operators_(backend) {}
 
     void advance(Substep& s) override {
+        reserve(s.particles.capacity());  // before anything moves: a frame that lacked memory can be tried again
         operators_.begin(s);
         s.choose_time_step();
         operators_.add_forces(s);
         operators_.predict(s);
         s.place_colliders();
-        reserve(s.particles.capacity());
         solve(s);
         operators_.compute_gradient(s, *u_);
         operators_.push(s);
@@ -47,7 +47,7 @@ class Pcisph : public Method {
                 {s.constants, delta, s.particles.position(), *predicted_, operators_.list().start(),
                  operators_.list().list(), s.colliders.buffer(), operators_.factor(), *u_, s.particles.spare_words()});
             s.report.iterations = k;
-            if (k >= k_least_iterations && mean_of(backend_, s.particles.spare_words(), count) <= tolerance) {
+            if (k >= k_least_iterations && mean_of(backend_, s.particles.spare_words(), count, *sums_) <= tolerance) {
                 s.report.converged = true;
                 return;
             }
@@ -56,6 +56,7 @@ class Pcisph : public Method {
 
     void reserve(std::size_t particle_capacity) {
         if (predicted_ && predicted_->bytes() >= particle_capacity * 16) return;
+        sums_ = backend_.allocate("sums", k_most_lanes * 4);
         u_ = backend_.allocate("pressure", particle_capacity * 4);
         predicted_ =
             backend_.allocate("predicted position", particle_capacity * 16);  // the last: all of them are there
@@ -63,7 +64,7 @@ class Pcisph : public Method {
 
     Backend& backend_;
     Operators operators_;
-    std::unique_ptr<Buffer> u_, predicted_;
+    std::unique_ptr<Buffer> sums_, u_, predicted_;
 };
 
 }  // namespace

@@ -11,11 +11,11 @@ class Wcsph : public Method {
     explicit Wcsph(Backend& backend) : backend_(backend), operators_(backend) {}
 
     void advance(Substep& s) override {
+        reserve(s.particles.capacity());  // before anything moves: a frame that lacked memory can be tried again
         operators_.begin(s);
         s.choose_time_step();
         operators_.add_forces(s);
         operators_.predict(s);
-        reserve(s.particles.capacity());
         backend_.launch(Kernel::tait_pressure, s.particles.count(), {s.constants, s.particles.density(), *u_});
         operators_.compute_gradient(s, *u_);
         operators_.push(s);

@@ -9,6 +9,8 @@ namespace {
 
 // Kernels count words in 32 bits.
 constexpr std::uint64_t k_most_words = 0xffffffffu;
+// Words of a shared list that a loop over vectors reads at a time, at the most.
+constexpr std::uint64_t k_widest_vector = 16;
 
 // A full neighbourhood has 32; every list of a particle's own ends with a word more, and has two more for a long step.
 ListLayout layout_of(const DeviceInfo& device) {
@@ -58,10 +60,21 @@ void NeighborList::build(Particles& particles, Neighborhood& neighborhood, StepC
                         {constants, particles.position(), neighborhood.cell_start(), *start_, *list_});
         backend_.read(*start_, needed, sizeof needed, needed_at);
         const std::uint64_t words = needed[0] | std::uint64_t{needed[1]} << 32;
-        if (words <= capacity_) return;
+        if (words <= capacity_) {
+            if (layout_.group > 1) blank_words_behind(words);
+            return;
+        }
         capacity_ = words + words / 16 + 16;
         list_.reset();
     }
+}
+
+// A vector may reach beyond the end of the last list. What an earlier build left there could be particles that are
+// gone, and that were no numbers any more: even with no weight those would spoil a sum.
+void NeighborList::blank_words_behind(std::uint64_t words) {
+    const std::uint32_t first_particle[k_widest_vector] = {};
+    const std::uint64_t count = std::min(k_widest_vector, capacity_ - words);
+    backend_.write(*list_, first_particle, count * sizeof(std::uint32_t), words * sizeof(std::uint32_t));
 }
 
 std::uint64_t NeighborList::bytes(std::uint64_t particle_count, const DeviceInfo& device) {

@@ -33,6 +33,7 @@ class NeighborList {
  private:
     void reserve(std::size_t particle_capacity);
     void set_layout(StepConstants& constants) const;
+    void blank_words_behind(std::uint64_t words);
 
     Backend& backend_;
     const ListLayout layout_;

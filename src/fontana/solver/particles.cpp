@@ -66,6 +66,7 @@ void Particles::write_slice(std::size_t begin, std::size_t end, const Source& so
     std::vector<float4> x(count), v(count);
     std::vector<std::uint32_t> id(count);
     const std::vector<float> density(count, rest_density), pressure(count, 0.0f);
+    const std::vector<float4> acceleration(count);  // zero, whatever stood there before fewer were uploaded
     for (std::size_t k = 0; k < count; ++k) {
         source(begin + k, x[k], v[k]);
         id[k] = static_cast<std::uint32_t>(first + k);
@@ -75,6 +76,7 @@ void Particles::write_slice(std::size_t begin, std::size_t end, const Source& so
     backend_.write(*id_, id.data(), count * 4, first * 4);
     backend_.write(*density_, density.data(), count * 4, first * 4);
     backend_.write(*pressure_, pressure.data(), count * 4, first * 4);
+    backend_.write(*acceleration_, acceleration.data(), count * 16, first * 16);
 }
 
 void Particles::set_force(const std::vector<float4>& force_by_id) {

@@ -113,14 +113,14 @@ void check_time_step(const Parameters& p) {
     // The bounds of stability themselves; the automatic limits above keep a margin of 2 to 3 from them. Viscosity: the
     // Laplacian of eq. 2.16 sums to 15 / H^2 (its integral), so an explicit step beyond H^2 density / (15 mu)
     // overshoots.
-    const double dt = frame / p.time_substeps, h = support_radius(p);
-    const double viscous_bound = quotient(h * h * p.fluid_rest_density, 15.0 * p.fluid_viscosity);
+    const double dt = frame / p.time_substeps, support = support_radius(p);
+    const double viscous_bound = quotient(support * support * p.fluid_rest_density, 15.0 * p.fluid_viscosity);
     if (dt > viscous_bound)
         fail(FONTANA_BAD_INPUT, "a viscosity of " + text_of(p.fluid_viscosity) + " Pa*s is unstable at a step of " +
                                     text_of(dt) + " s: use time.substeps " + text_of(std::ceil(frame / viscous_bound)) +
                                     " or more, or 0 for automatic");
     if (limits.acoustic == k_infinity) return;
-    const double acoustic_bound = quotient(h, std::sqrt(p.fluid_pressure_constant));
+    const double acoustic_bound = quotient(support, std::sqrt(p.fluid_pressure_constant));
     if (dt > acoustic_bound)
         fail(FONTANA_BAD_INPUT, "a pressure constant of " + text_of(p.fluid_pressure_constant) +
                                     " m^2/s^2 is unstable at a step of " + text_of(dt) + " s: use time.substeps " +
