@@ -47,7 +47,6 @@ void CoarseCorrection::reserve(Substep& s) {
 }
 
 void CoarseCorrection::prepare(Substep& s, Operators& operators, Buffer& u, Buffer& products) {
-    reserve(s);
     const auto count = static_cast<std::uint32_t>(s.particles.count());
     const auto cell_count = static_cast<std::uint32_t>(s.neighborhood.shape().cell_count());
     backend_.launch(Kernel::coarse_weights, count,

@@ -14,6 +14,8 @@ class CoarseCorrection {
  public:
     explicit CoarseCorrection(Backend& backend) : backend_(backend) {}
 
+    // Memory for all levels of the substep's grid.
+    void reserve(Substep& substep);
     // Builds the matrices of all levels for the particles that have pressure `u` or are called on for some; rate() of
     // the operators is the target of the solve. `products` is written to, and done with on return.
     void prepare(Substep& substep, Operators& operators, Buffer& u, Buffer& products);
@@ -34,8 +36,6 @@ class CoarseCorrection {
         CoarseLevel shape;
         std::unique_ptr<Buffer> matrix, b, guess, z;
     };
-
-    void reserve(Substep& substep);
 
     Backend& backend_;
     std::vector<Level> levels_;  // finest first

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/pressure_solve.h"
 #include "solver/coarse_correction.h"
 #include "solver/constants.h"
 #include "solver/methods.h"
@@ -18,23 +19,23 @@ constexpr float k_coarse_relaxation = 0.5f;
 constexpr float k_worse = 4.0f;  // times the first residual: a coarse correction that leads there does not help
 constexpr std::uint32_t k_least_iterations = 2;
 constexpr std::uint32_t k_lanes = 1024, k_folded_lanes = 32;
-constexpr std::size_t k_sums = 6;  // floats a lane, as in kernels/anderson.h
 constexpr std::size_t k_depth = 2;
 
 // As in kernels/pressure_solve.h.
 struct SolveState {
     float residual, history, gamma_0, gamma_1, done, iterations;
 };
+static_assert(sizeof(SolveState) == SOLVE_STATE_SIZE * sizeof(float));
 
 class Dfsph : public Method {
  public:
     explicit Dfsph(Backend& backend) : backend_(backend), operators_(backend), coarse_(backend) {}
 
     void advance(Substep& s) override {
+        reserve(s);
         operators_.begin(s);
         s.choose_time_step();
         operators_.add_forces(s);
-        reserve(s.particles.capacity());
         residual_ = &s.particles.spare_words();
         remove_divergence(s);
         operators_.predict(s);
@@ -93,10 +94,8 @@ class Dfsph : public Method {
         backend_.launch(Kernel::load_warm_start, count,
                         {static_cast<std::uint32_t>(count), s.particles.velocity(), operators_.factor(), u(1)});
         const auto most = static_cast<std::uint32_t>(s.parameters.solver_max_iterations);
-        // Without the grid there are no cells to merge.
-        const bool has_coarse = s.parameters.solver_pressure_solver == "multilevel" && s.constants.use_grid;
-        with_coarse_ = has_coarse && long_waves_matter(s);
-        const bool may_give_up = has_coarse && !with_coarse_;
+        with_coarse_ = may_be_coarse(s) && long_waves_matter(s);
+        const bool may_give_up = may_be_coarse(s) && !with_coarse_;
         if (with_coarse_) coarse_.prepare(s, operators_, u(1), *workspace_);
         SolveState state = iterate_until_done(s, most, may_give_up);
         s.report.iterations = static_cast<std::uint32_t>(state.iterations);
@@ -108,6 +107,11 @@ class Dfsph : public Method {
             s.report.iterations += static_cast<std::uint32_t>(state.iterations);
         }
         s.report.converged = state.done > 0.0f;
+    }
+
+    // Without the grid there are no cells to merge.
+    static bool may_be_coarse(const Substep& s) {
+        return s.parameters.solver_pressure_solver == "multilevel" && s.constants.use_grid;
     }
 
     // From u(1) to pressure_. The matrices of the coarse levels cost as much as two iterations, and most solves in a
@@ -123,10 +127,11 @@ class Dfsph : public Method {
             if (k % poll != 0 && k != most) continue;
             backend_.read(*state_, &state, sizeof state);
             if (state.done > 0.0f) break;
-            // A correction that makes it worse is left off for the rest of the solve.
-            if (k <= poll) first_residual = state.residual;
-            if (state.residual > k_worse * first_residual) with_coarse_ = false;
+            // Decisions fall every second iteration, whenever the host asks: all devices take the same.
             if (k % 2 != 0) continue;
+            // A correction that makes it worse is left off for the rest of the solve.
+            if (k == 2) first_residual = state.residual;
+            if (state.residual > k_worse * first_residual) with_coarse_ = false;
             const double pace = static_cast<double>(state.residual / residual_before);  // of two iterations
             if (may_give_up && k >= 4 && static_cast<double>(state.residual) * std::pow(pace, 4) > allowed_residual(s))
                 break;
@@ -171,16 +176,19 @@ class Dfsph : public Method {
     Buffer& u(std::uint32_t k) { return *u_[k % (k_depth + 1)]; }
     Buffer& step(std::uint32_t k) { return *step_[k % (k_depth + 1)]; }
 
-    // What the coarse correction keeps before the first iteration and what is kept between iterations lie in the same
-    // memory: the former is used up before the latter is written. Only the first u is needed all along.
-    void reserve(std::size_t particle_capacity) {
-        const std::size_t bytes = particle_capacity * 4;
+    // All memory before anything moves, so that a substep that lacks some can be tried again. What the coarse
+    // correction keeps before the first iteration and what is kept between iterations lie in the same: the former is
+    // used up before the latter is written. Only the first u is needed all along.
+    void reserve(Substep& s) {
+        if (may_be_coarse(s)) coarse_.reserve(s);
+        const std::size_t particle_capacity = s.particles.capacity(), bytes = particle_capacity * 4;
         if (state_ && u(1).bytes() >= bytes) return;
         state_.reset();
         constexpr std::size_t alignment = Backend::part_alignment, parts = 2 * (k_depth + 1) - 1;
         const std::size_t part = (bytes + alignment - 1) / alignment * alignment;
         for (std::unique_ptr<Buffer>& former : step_) former.reset();
         for (std::unique_ptr<Buffer>& former : u_) former.reset();
+        workspace_.reset();
         const std::size_t products = CoarseCorrection::product_bytes(particle_capacity);
         workspace_ = backend_.allocate("solve", std::max(parts * part, products));
         std::size_t taken = 0;
@@ -189,8 +197,8 @@ class Dfsph : public Method {
             u_[k] = k == 1 ? backend_.allocate("pressure", bytes)
                            : backend_.part(*workspace_, "pressure", part * taken++, bytes);
         }
-        sums_ = backend_.allocate("sums", k_lanes * k_sums * 4);
-        folded_sums_ = backend_.allocate("folded sums", k_folded_lanes * k_sums * 4);
+        sums_ = backend_.allocate("sums", k_lanes * SOLVE_SUMS * 4);
+        folded_sums_ = backend_.allocate("folded sums", k_folded_lanes * SOLVE_SUMS * 4);
         state_ = backend_.allocate("solve state", sizeof(SolveState));  // the last: it says that all of them are there
     }
 
