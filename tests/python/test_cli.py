@@ -113,6 +113,10 @@ def test_bad_arguments_are_exit_code_2(fontana, arguments: list[str], sentence: 
         (["run", "box", "--backend", "opencll"], '--backend: "opencll" is not one of auto, cpu, cuda, opencl; did you'),
         (["run", "box", "--frames", "0"], "--frames: 0 is not in the range x>=1"),
         (["bench", "thesis", "--counts", "a"], '--counts: "a": expected particle counts from 1'),
+        (["bench", "thesis", "--budget", "inf"], "--budget: inf is not a finite number"),
+        (["render", "out", "-o", "a.gif", "--fps", "nan"], "--fps: nan is not a finite number"),
+        (["mesh", "out", "--cell-size", "nan"], "--cell-size: nan is not a finite number"),
+        (["export", "out", "-o", "a.vdb", "--voxel-size", "nan"], "--voxel-size: nan is not a finite number"),
     ],
 )
 def test_a_command_line_that_is_wrong_is_one_sentence(fontana, arguments: list[str], sentence: str) -> None:

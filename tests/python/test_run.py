@@ -245,9 +245,24 @@ def test_a_run_json_that_is_not_ours_is_refused(fontana, drop_file: Path, tmp_pa
     fontana("run", drop_file, "--out", "out", "--restart", "--frames", 1, "--no-picture")
 
 
+def test_names_need_not_be_utf_8(fontana, drop_file: Path, tmp_path: Path) -> None:
+    """A folder off an old disk, before and behind a stop; and a terminal that cannot show its name."""
+    out = Path(os.fsdecode(os.fsencode(tmp_path) + b"/lat\xedn"))
+    strict = {"PYTHONIOENCODING": "utf-8:strict"}
+    fontana("run", drop_file, "--out", out, "--frames", 2, env=strict)
+    resumed = fontana("resume", out, "--frames", 3, env=strict)
+    assert "continues after frame 2" in resumed.stdout
+    assert r"lat\udcedn" in resumed.stdout
+    assert (out / "drop.0003.bgeo").exists()
+    (out / "drop.checkpoint").write_bytes(b"cut")
+    (out / "drop.checkpoint.previous").unlink()
+    assert "drop.checkpoint cannot be used" in fontana("resume", out, "--frames", 4, env=strict).stdout
+
+
 def test_an_output_that_cannot_be_written_is_exit_code_6(fontana, drop_file: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     assert "cannot write to" in error_line(fontana("run", drop_file, "--out", "file/out", code=6))
+    assert "it is a file, not a folder" in error_line(fontana("run", drop_file, "--out", "file", code=6))
 
 
 def test_a_full_disk_keeps_the_frames_so_far(fontana, whole, drop_file: Path, tmp_path: Path) -> None:

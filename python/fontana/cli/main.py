@@ -48,6 +48,8 @@ for command in (
 
 def main() -> None:
     """Runs the command line and leaves with the exit code."""
+    if sys.stdout and sys.stdout.errors == "strict":  # a name that cannot be shown ends no run
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         code = cli.main(prog_name="fontana", standalone_mode=False) or exit_codes.OK
     except click.exceptions.NoArgsIsHelpError as error:
