@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import itertools
 import json
+import os
+import subprocess
 from pathlib import Path
 
 import pytest
-from command_line import error_line
+from command_line import error_line, fontana_command
 
 import fontana as package
 import fontana.cli.verify as verify_module
@@ -63,6 +65,14 @@ def test_fluids_show_ranges_and_sources(fontana) -> None:
     assert "source" in text
     assert "did you mean honey?" in error_line(fontana("fluids", "honney", code=2))
     assert json.loads(fontana("fluids", "--json").stdout)[0]["key"] == "water"
+
+
+def test_a_reader_that_has_enough_is_no_error() -> None:
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(fontana_command("schema"), stdout=write, stderr=subprocess.PIPE, text=True)
+    os.close(write)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_scenes_and_schema(fontana) -> None:

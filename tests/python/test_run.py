@@ -259,6 +259,33 @@ def test_names_need_not_be_utf_8(fontana, drop_file: Path, tmp_path: Path) -> No
     assert "drop.checkpoint cannot be used" in fontana("resume", out, "--frames", 4, env=strict).stdout
 
 
+@pytest.mark.parametrize("style", [(), ("--json",)])
+def test_a_log_that_nobody_reads_stops_the_run_and_the_same_command_continues(
+    fontana, drop_file: Path, tmp_path: Path, style: tuple[str, ...]
+) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    run = subprocess.run(
+        fontana_command("run", drop_file, *style), cwd=tmp_path, stdout=write, stderr=subprocess.PIPE, text=True
+    )
+    os.close(write)
+    assert run.returncode == 6
+    sentence = "cannot write to standard output: its reader is gone; the same command continues"
+    assert error_line(run) == f"fontana: {sentence}"
+    fontana("run", drop_file)
+    with open("/dev/full", "w") as full:
+        run = subprocess.run(
+            fontana_command("run", drop_file, *style), cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True
+        )
+    assert "cannot write to standard output: No space left on device" in error_line(run)
+
+
+def test_closed_streams_harm_nothing(whole, drop_file: Path, tmp_path: Path) -> None:
+    command = " ".join(fontana_command("run", drop_file, "--out", "run", "--backend", "cpu"))
+    assert subprocess.run(["sh", "-c", f"{command} >&- 2>&-"], cwd=tmp_path).returncode == 0
+    assert frames_of(tmp_path / "run") == whole
+
+
 def test_an_output_that_cannot_be_written_is_exit_code_6(fontana, drop_file: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     assert "cannot write to" in error_line(fontana("run", drop_file, "--out", "file/out", code=6))
