@@ -1,4 +1,4 @@
-"""What long work prints: when standard output takes no more, the work ends with a sentence and does not go on unseen."""
+"""What long work prints. Where standard output takes no more, the work ends with a sentence, not unseen."""
 
 from __future__ import annotations
 
