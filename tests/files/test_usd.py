@@ -153,6 +153,8 @@ def test_what_cannot_be_is_one_sentence(fontana, splash: Path) -> None:
     assert "did you mean .vdb?" in error_line(fontana("export", splash, "-o", "s.vbd", code=2))
     line = error_line(fontana("export", splash, "-o", "/proc/s.usdc", code=6))
     assert line == 'fontana: cannot write "/proc/s.usdc": No such file or directory'
+    line = error_line(fontana("export", splash, "-o", splash / "run.json/s.usdc", code=6))
+    assert line.endswith('run.json" is a file, not a folder')
     line = error_line(fontana("export", splash, "-o", os.fsdecode(b"lat\xedn.usdc"), code=2))
     assert line.endswith("expected a name in UTF-8, the only ones that writers of .usdc take")
     blocked = {"PYTHONPATH": str(Path(__file__).parent / "without_usd")}

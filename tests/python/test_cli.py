@@ -119,6 +119,7 @@ def test_bad_arguments_are_exit_code_2(fontana, arguments: list[str], sentence: 
     [
         (["run", "box", "--bakend", "cpu"], "no such option '--bakend'; did you mean '--backend'?"),
         (["runn", "box"], "no such command 'runn'; did you mean 'run'?"),
+        (["bench", "thesi"], "no such command 'thesi'; did you mean thesis?"),
         (["run"], "missing argument 'SCENE'; fontana run --help says more"),
         (["run", "box", "--backend", "opencll"], '--backend: "opencll" is not one of auto, cpu, cuda, opencl; did you'),
         (["run", "box", "--frames", "0"], "--frames: 0 is not in the range x>=1"),

@@ -61,6 +61,8 @@ def _sync(path: Path, flags: int) -> None:
 
 def _reason(error: Exception, folder: Path) -> str:
     """The system's word where there is one; the libraries do not pass it on, a full disk least of all."""
+    if isinstance(error, FileExistsError):
+        return f'"{folder}" is a file, not a folder'
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     with contextlib.suppress(OSError):
