@@ -245,6 +245,14 @@ def test_a_run_json_that_is_not_ours_is_refused(fontana, drop_file: Path, tmp_pa
     fontana("run", drop_file, "--out", "out", "--restart", "--frames", 1, "--no-picture")
 
 
+@pytest.mark.parametrize("change", [{"files": []}, {"time": None}, {"particles": "many"}])
+def test_a_run_json_whose_frames_were_edited_is_refused(fontana, drop_cache: Path, change: dict) -> None:
+    data = manifest_of(drop_cache)
+    data["frames"][0] |= change
+    (drop_cache / "run.json").write_text(json.dumps(data))
+    assert "--restart begins anew" in error_line(fontana("resume", drop_cache, code=2))
+
+
 def test_names_need_not_be_utf_8(fontana, drop_file: Path, tmp_path: Path) -> None:
     """A folder off an old disk, before and behind a stop; and a terminal that cannot show its name."""
     out = Path(os.fsdecode(os.fsencode(tmp_path) + b"/lat\xedn"))

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import fontana
-from fontana.overrides import parse_assignment
+from fontana.overrides import parse_assignment, parse_assignments
 from fontana.reader import parse_json
 from fontana.scene import bundled_scenes, changed_keys, digest, load_scene, resolve
 
@@ -185,6 +185,12 @@ def test_overrides_win_and_reach_every_part() -> None:
     assert scene.emitters[0]["size"] == [1, 1, 2]
     assert scene.frame_count == 7
     assert document["fluid"] == "honey"
+
+
+def test_of_two_changes_of_the_same_value_the_last_wins() -> None:
+    changes = parse_assignments(["viscosity=1", "fluid.viscosity=2", 'fluid={"particle_spacing": 0.1}', "viscosity=3"])
+    scene = load_scene({"name": "a", "emitters": []}, changes)
+    assert scene.parameters == {"fluid.particle_spacing": 0.1, "fluid.viscosity": 3.0}
 
 
 def test_another_fluid_keeps_the_particles_and_loses_the_values() -> None:
