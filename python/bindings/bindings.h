@@ -5,6 +5,7 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/function.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -12,6 +13,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <array>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,8 @@ namespace nb = nanobind;
 using namespace nb::literals;
 
 using Point = std::array<double, 3>;
+// A name as the system has it: its bytes need not be UTF-8, which a std::string's must be.
+using FilePath = std::filesystem::path;
 
 // Raises the exception of this status, with the library's sentence; nothing for FONTANA_OK.
 void check(fontana_status status);

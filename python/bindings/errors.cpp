@@ -7,6 +7,13 @@ namespace {
 
 PyObject* error_classes[FONTANA_INTERNAL + 1];
 
+// A sentence may name a file whose name is not UTF-8; it is decoded as Python decodes such names.
+[[noreturn]] void raise_error(fontana_status status, const char* sentence) {
+    const nb::object text = nb::steal(PyUnicode_DecodeFSDefault(sentence));
+    if (text.is_valid()) PyErr_SetObject(error_classes[status], text.ptr());
+    throw nb::python_error();
+}
+
 }  // namespace
 
 void bind_errors(nb::module_& m) {
@@ -22,13 +29,9 @@ void bind_errors(nb::module_& m) {
 
 void check(fontana_status status) {
     if (status == FONTANA_OK) return;
-    PyErr_SetString(error_classes[status], fontana_last_error());
-    throw nb::python_error();
+    raise_error(status, fontana_last_error());
 }
 
-void bad_input(const std::string& sentence) {
-    PyErr_SetString(error_classes[FONTANA_BAD_INPUT], sentence.c_str());
-    throw nb::python_error();
-}
+void bad_input(const std::string& sentence) { raise_error(FONTANA_BAD_INPUT, sentence.c_str()); }
 
 }  // namespace fontana_python

@@ -8,7 +8,7 @@ namespace fontana_python {
 
 namespace {
 
-std::tuple<std::int64_t, std::uint64_t, std::string> checkpoint_info(const std::string& path) {
+std::tuple<std::int64_t, std::uint64_t, std::string> checkpoint_info(const FilePath& path) {
     std::int64_t frame = 0;
     std::uint64_t count = 0;
     std::vector<char> tag(std::size_t{1} << 20 | 1);  // the longest a checkpoint may have
@@ -16,7 +16,7 @@ std::tuple<std::int64_t, std::uint64_t, std::string> checkpoint_info(const std::
     return {frame, count, tag.data()};
 }
 
-std::uint64_t publish_file(const std::string& path, const nb::bytes& data) {
+std::uint64_t publish_file(const FilePath& path, const nb::bytes& data) {
     std::uint64_t hash = 0;
     check(fontana_publish_file(path.c_str(), data.c_str(), data.size(), &hash));
     return hash;

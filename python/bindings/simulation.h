@@ -55,9 +55,9 @@ class Simulation {
     Device device();
     std::vector<KernelProfile> profile();
     double measure_copy(std::size_t bytes);
-    void write_bgeo(const std::string& path);
-    void save_checkpoint(const std::string& path, const std::string& tag);
-    void load_checkpoint(const std::string& path);
+    void write_bgeo(const FilePath& path);
+    void save_checkpoint(const FilePath& path, const std::string& tag);
+    void load_checkpoint(const FilePath& path);
 
  private:
     template <typename T>

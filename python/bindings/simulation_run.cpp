@@ -81,12 +81,12 @@ double Simulation::measure_copy(std::size_t bytes) {
     return bytes_per_second;
 }
 
-void Simulation::write_bgeo(const std::string& path) { check(fontana_write_bgeo(handle_, path.c_str())); }
+void Simulation::write_bgeo(const FilePath& path) { check(fontana_write_bgeo(handle_, path.c_str())); }
 
-void Simulation::save_checkpoint(const std::string& path, const std::string& tag) {
+void Simulation::save_checkpoint(const FilePath& path, const std::string& tag) {
     check(fontana_save_checkpoint(handle_, path.c_str(), tag.c_str()));
 }
 
-void Simulation::load_checkpoint(const std::string& path) { check(fontana_load_checkpoint(handle_, path.c_str())); }
+void Simulation::load_checkpoint(const FilePath& path) { check(fontana_load_checkpoint(handle_, path.c_str())); }
 
 }  // namespace fontana_python

@@ -47,15 +47,16 @@ def _unknown_key(error: ValidationError, where: str) -> str:
     if nearest(key, known):
         hint = f"; did you mean {path_text([*path, nearest(key, known)])}?"
     else:
-        hint = _elsewhere(key) or suggestion(key, known)
+        hint = _elsewhere(key, is_bare=not path) or suggestion(key, known)
     return f"{path_text([*path, key])}: there is no such {'key' if path else 'part of a scene'}{hint}"
 
 
-def _elsewhere(key: str) -> str:
-    """A hint where a known parameter stands in the wrong group, such as a bare "viscosity"."""
+def _elsewhere(key: str, is_bare: bool) -> str:
+    """A hint where a known parameter stands in the wrong group, such as a bare "viscosity" or, if bare, nearly so."""
     groups = {name: part["properties"] for name, part in scene_schema()["properties"].items() if "properties" in part}
-    places = [f"{group}.{key}" for group, properties in groups.items() if key in properties]
-    return f"; did you mean {places[0]}?" if places else ""
+    places = {name: f"{group}.{name}" for group, properties in groups.items() for name in properties}
+    near = nearest(key, places) if is_bare else key
+    return f"; did you mean {places[near]}?" if near in places else ""
 
 
 def _wrong_type(error: ValidationError, where: str) -> str:

@@ -15,5 +15,7 @@ def make_output_folder(folder: Path) -> None:
         probe = folder / f".fontana.{os.getpid()}.tmp"
         probe.touch()
         probe.unlink()
+    except FileExistsError as error:
+        raise _core.IoError(f'cannot write to "{folder}": it is a file, not a folder') from error
     except OSError as error:
         raise _core.IoError(f'cannot write to "{folder}": {error.strerror}') from error

@@ -14,6 +14,16 @@ from fontana.tables import parameters
 _PART = re.compile(r"([A-Za-z_$][A-Za-z0-9_$]*)((?:\[\d{1,6}\])*)")
 
 
+def parse_assignments(texts: Iterable[str]) -> dict[str, object]:
+    """The changes that several "path=value" ask for, in their order; of two for the same path the last."""
+    changes: dict[str, object] = {}
+    for text in texts:
+        path, value = parse_assignment(text)
+        changes.pop(path, None)
+        changes[path] = value
+    return changes
+
+
 def parse_assignment(text: str) -> tuple[str, object]:
     """Reads "path=value" as the command line has it: the value is JSON if it parses as such, else text.
 
@@ -22,7 +32,7 @@ def parse_assignment(text: str) -> tuple[str, object]:
     path, equals, value = text.partition("=")
     if not equals or not path.strip():
         raise SceneError(f'"{clean(text)}": expected path=value, such as fluid.viscosity=0.3')
-    return path.strip(), _read_value(value.strip())
+    return _full_path(path.strip()), _read_value(value.strip())
 
 
 def _read_value(text: str) -> object:

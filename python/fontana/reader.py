@@ -115,4 +115,14 @@ def _too_deep() -> str:
 
 
 def _reason(error: json.JSONDecodeError) -> str:
+    """json's words, or what is wrong where other languages than JSON would go on."""
+    rest, before = error.doc[error.pos :], error.doc[: error.pos].rstrip()
+    if not rest.strip():
+        return "the file is empty" if not before else "it ends too early"
+    if rest.startswith(("//", "/*", "#")):
+        return "it has no comments; a label or description can say such a thing"
+    if rest.startswith("'"):
+        return "text stands between \", not between '"
+    if before.endswith(",") and rest[0] in "}]":
+        return f"expected no comma before {rest[0]}"
     return clean(error.msg[:1].lower() + error.msg[1:])

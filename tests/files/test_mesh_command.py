@@ -129,6 +129,20 @@ def test_a_signal_keeps_what_is_done_and_the_same_command_continues(
     assert {name: content for name, content in files_of(tmp_path).items() if name in kept} == kept
 
 
+def test_ctrl_c_while_workers_begin_is_no_traceback(splash: Path, tmp_path: Path) -> None:
+    """They import for a while before they can ask not to be interrupted."""
+    command = fontana_command("mesh", splash, "-o", "w.ply", "--jobs", 2, "--json")
+    process = subprocess.Popen(
+        command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    assert '"start"' in process.stdout.readline()
+    time.sleep(0.15)
+    os.killpg(process.pid, signal.SIGINT)
+    _, stderr = process.communicate(timeout=60)
+    assert process.returncode == 130, stderr
+    assert "Traceback" not in stderr
+
+
 def test_workers_do_not_outlive_a_killed_parent(splash: Path, tmp_path: Path) -> None:
     command = fontana_command("mesh", splash, "-o", "w.ply", "--cell-size", 0.2, "--jobs", 2, "--json")
     process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True, start_new_session=True)

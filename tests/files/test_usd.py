@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import resource
 import signal
@@ -152,6 +153,10 @@ def test_what_cannot_be_is_one_sentence(fontana, splash: Path) -> None:
     assert "did you mean .vdb?" in error_line(fontana("export", splash, "-o", "s.vbd", code=2))
     line = error_line(fontana("export", splash, "-o", "/proc/s.usdc", code=6))
     assert line == 'fontana: cannot write "/proc/s.usdc": No such file or directory'
+    line = error_line(fontana("export", splash, "-o", splash / "run.json/s.usdc", code=6))
+    assert line.endswith('run.json" is a file, not a folder')
+    line = error_line(fontana("export", splash, "-o", os.fsdecode(b"lat\xedn.usdc"), code=2))
+    assert line.endswith("expected a name in UTF-8, the only ones that writers of .usdc take")
     blocked = {"PYTHONPATH": str(Path(__file__).parent / "without_usd")}
     done = fontana("export", splash, "-o", "s.usdc", code=2, env=blocked)
     assert f"USD needs usd-core, which is not here: {sys.executable} -m pip install 'fontana[usd]'" in error_line(done)

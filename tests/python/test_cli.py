@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import itertools
 import json
+import os
+import subprocess
 from pathlib import Path
 
 import pytest
-from command_line import error_line
+from command_line import error_line, fontana_command
 
 import fontana as package
 import fontana.cli.verify as verify_module
@@ -67,6 +69,14 @@ def test_fluids_show_ranges_and_sources(fontana) -> None:
     assert json.loads(fontana("fluids", "--json").stdout)[0]["key"] == "water"
 
 
+def test_a_reader_that_has_enough_is_no_error() -> None:
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(fontana_command("schema"), stdout=write, stderr=subprocess.PIPE, text=True)
+    os.close(write)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 def test_scenes_and_schema(fontana) -> None:
     names = {entry["name"] for entry in json.loads(fontana("scenes", "--json").stdout)}
     assert names >= {"box", "fountain", "fountain_rock", "thesis_box", "thesis_fountain"}
@@ -111,10 +121,15 @@ def test_bad_arguments_are_exit_code_2(fontana, arguments: list[str], sentence: 
     [
         (["run", "box", "--bakend", "cpu"], "no such option '--bakend'; did you mean '--backend'?"),
         (["runn", "box"], "no such command 'runn'; did you mean 'run'?"),
+        (["bench", "thesi"], "no such command 'thesi'; did you mean thesis?"),
         (["run"], "missing argument 'SCENE'; fontana run --help says more"),
         (["run", "box", "--backend", "opencll"], '--backend: "opencll" is not one of auto, cpu, cuda, opencl; did you'),
         (["run", "box", "--frames", "0"], "--frames: 0 is not in the range x>=1"),
         (["bench", "thesis", "--counts", "a"], '--counts: "a": expected particle counts from 1'),
+        (["bench", "thesis", "--budget", "inf"], "--budget: inf is not a finite number"),
+        (["render", "out", "-o", "a.gif", "--fps", "nan"], "--fps: nan is not a finite number"),
+        (["mesh", "out", "--cell-size", "nan"], "--cell-size: nan is not a finite number"),
+        (["export", "out", "-o", "a.vdb", "--voxel-size", "nan"], "--voxel-size: nan is not a finite number"),
     ],
 )
 def test_a_command_line_that_is_wrong_is_one_sentence(fontana, arguments: list[str], sentence: str) -> None:

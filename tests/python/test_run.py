@@ -245,9 +245,59 @@ def test_a_run_json_that_is_not_ours_is_refused(fontana, drop_file: Path, tmp_pa
     fontana("run", drop_file, "--out", "out", "--restart", "--frames", 1, "--no-picture")
 
 
+@pytest.mark.parametrize("change", [{"files": []}, {"time": None}, {"particles": "many"}])
+def test_a_run_json_whose_frames_were_edited_is_refused(fontana, drop_cache: Path, change: dict) -> None:
+    data = manifest_of(drop_cache)
+    data["frames"][0] |= change
+    (drop_cache / "run.json").write_text(json.dumps(data))
+    assert "--restart begins anew" in error_line(fontana("resume", drop_cache, code=2))
+
+
+def test_names_need_not_be_utf_8(fontana, drop_file: Path, tmp_path: Path) -> None:
+    """A folder off an old disk, before and behind a stop; and a terminal that cannot show its name."""
+    out = Path(os.fsdecode(os.fsencode(tmp_path) + b"/lat\xedn"))
+    strict = {"PYTHONIOENCODING": "utf-8:strict"}
+    fontana("run", drop_file, "--out", out, "--frames", 2, env=strict)
+    resumed = fontana("resume", out, "--frames", 3, env=strict)
+    assert "continues after frame 2" in resumed.stdout
+    assert r"lat\udcedn" in resumed.stdout
+    assert (out / "drop.0003.bgeo").exists()
+    (out / "drop.checkpoint").write_bytes(b"cut")
+    (out / "drop.checkpoint.previous").unlink()
+    assert "drop.checkpoint cannot be used" in fontana("resume", out, "--frames", 4, env=strict).stdout
+
+
+@pytest.mark.parametrize("style", [(), ("--json",)])
+def test_a_log_that_nobody_reads_stops_the_run_and_the_same_command_continues(
+    fontana, drop_file: Path, tmp_path: Path, style: tuple[str, ...]
+) -> None:
+    read, write = os.pipe()
+    os.close(read)
+    run = subprocess.run(
+        fontana_command("run", drop_file, *style), cwd=tmp_path, stdout=write, stderr=subprocess.PIPE, text=True
+    )
+    os.close(write)
+    assert run.returncode == 6
+    sentence = "cannot write to standard output: its reader is gone; the same command continues"
+    assert error_line(run) == f"fontana: {sentence}"
+    fontana("run", drop_file)
+    with open("/dev/full", "w") as full:
+        run = subprocess.run(
+            fontana_command("run", drop_file, *style), cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True
+        )
+    assert "cannot write to standard output: No space left on device" in error_line(run)
+
+
+def test_closed_streams_harm_nothing(whole, drop_file: Path, tmp_path: Path) -> None:
+    command = " ".join(fontana_command("run", drop_file, "--out", "run", "--backend", "cpu"))
+    assert subprocess.run(["sh", "-c", f"{command} >&- 2>&-"], cwd=tmp_path).returncode == 0
+    assert frames_of(tmp_path / "run") == whole
+
+
 def test_an_output_that_cannot_be_written_is_exit_code_6(fontana, drop_file: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     assert "cannot write to" in error_line(fontana("run", drop_file, "--out", "file/out", code=6))
+    assert "it is a file, not a folder" in error_line(fontana("run", drop_file, "--out", "file", code=6))
 
 
 def test_a_full_disk_keeps_the_frames_so_far(fontana, whole, drop_file: Path, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import fontana
-from fontana.overrides import parse_assignment
+from fontana.overrides import parse_assignment, parse_assignments
 from fontana.reader import parse_json
 from fontana.scene import bundled_scenes, changed_keys, digest, load_scene, resolve
 
@@ -83,7 +83,12 @@ def _checked(document: dict) -> object:
         ('{"a": ' + "9" * 5000 + "}", "is too large"),
         ("[" * 100000, "nested deeper than 64"),
         ('{"a":' * 70 + "1" + "}" * 70, "nested deeper than 64"),
-        ("", "not JSON"),
+        ("", "not JSON: the file is empty"),
+        ('{"name": "a"', "line 1, column 13: not JSON: it ends too early"),
+        ('{"name": "a" // b\n}', "line 1, column 14: not JSON: it has no comments"),
+        ('{"name": "a",\n}', "line 2, column 1: not JSON: expected no comma before }"),
+        ('{"emitters": [1,]}', "not JSON: expected no comma before ]"),
+        ("{'name': 1}", "line 1, column 2: not JSON: text stands between "),
         ('{"name": "' + "x" * 70000 + '"}', "text longer than"),
     ],
 )
@@ -182,6 +187,12 @@ def test_overrides_win_and_reach_every_part() -> None:
     assert document["fluid"] == "honey"
 
 
+def test_of_two_changes_of_the_same_value_the_last_wins() -> None:
+    changes = parse_assignments(["viscosity=1", "fluid.viscosity=2", 'fluid={"particle_spacing": 0.1}', "viscosity=3"])
+    scene = load_scene({"name": "a", "emitters": []}, changes)
+    assert scene.parameters == {"fluid.particle_spacing": 0.1, "fluid.viscosity": 3.0}
+
+
 def test_another_fluid_keeps_the_particles_and_loses_the_values() -> None:
     document = {"fluid": {"particle_spacing": 0.01, "viscosity": 3, "rest_density": 900, "surface_tension": 0.1}}
     for override in ({"fluid": "honey"}, {"fluid.type": "honey"}):
@@ -200,6 +211,7 @@ def test_another_fluid_keeps_the_particles_and_loses_the_values() -> None:
     [
         ("fluid.viscosity", "expected path=value"),
         ("fluid.viscocity=1", "did you mean fluid.viscosity?"),
+        ("viscocity=1", "viscocity: there is no such part of a scene; did you mean fluid.viscosity?"),
         ("emitters[4].speed=1", "there are only 0 entries"),
         ("fluid..x=1", "is not a path"),
         ("fluid.viscosity.x=1", "fluid.viscosity: expected a number"),

@@ -9,6 +9,7 @@ import click
 from fontana import _core
 from fontana.bench._scenes import BENCH_SCENES
 from fontana.bench._text import count_list, word_list
+from fontana.cli.usage import FloatRange
 from fontana.tables import suggestion
 
 
@@ -46,7 +47,7 @@ def budget_option(default: float, more_than: str):
     """`more_than`: when a scheme is cut off, for the help."""
     return click.option(
         "--budget",
-        type=click.FloatRange(0, min_open=True),
+        type=FloatRange(0, min_open=True),
         default=default,
         show_default=True,
         metavar="SECONDS",

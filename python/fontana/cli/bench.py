@@ -7,6 +7,9 @@ import pkgutil
 
 import click
 
+from fontana.errors import clean
+from fontana.tables import suggestion
+
 
 class _Benchmarks(click.Group):
     """Finds the commands by looking, and imports one only when it is called."""
@@ -20,6 +23,11 @@ class _Benchmarks(click.Group):
         if name not in self.list_commands(context):
             return None
         return getattr(importlib.import_module(f"fontana.bench.{name}"), "command", None)
+
+    def resolve_command(self, context: click.Context, args: list[str]) -> tuple:
+        if args and args[0] not in self.list_commands(context):  # click offers only what it has imported
+            context.fail(f"no such command '{clean(args[0])}'{suggestion(args[0], self.list_commands(context))}")
+        return super().resolve_command(context, args)
 
 
 @click.group(cls=_Benchmarks)

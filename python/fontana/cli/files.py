@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 
+from fontana.cli.usage import FloatRange
 from fontana.export import alembic, usd, vdb
 from fontana.export.sequence import SequenceOptions, make_sequence
 from fontana.export.surfaces import SUFFIXES as MESH_SUFFIXES
@@ -41,7 +42,7 @@ def _surface_options(function):
         (
             click.option(
                 "--cell-size",
-                type=click.FloatRange(0.1, 4.0),
+                type=FloatRange(0.1, 4.0),
                 default=_SURFACE.cell_size,
                 show_default=True,
                 metavar="RADII",
@@ -57,7 +58,7 @@ def _surface_options(function):
             ),
             click.option(
                 "--threshold",
-                type=click.FloatRange(0.05, 1.5),
+                type=FloatRange(0.05, 1.5),
                 default=_SURFACE.threshold,
                 show_default=True,
                 help="Share of the rest density at which the surface lies: smaller is fatter.",
@@ -131,7 +132,7 @@ def mesh(
 @click.option("-o", "--out", metavar="NAME", required=True, help="Ends in .usdc, .usda, .usd, .abc or .vdb.")
 @click.option(
     "--voxel-size",
-    type=click.FloatRange(0.25, 8.0),
+    type=FloatRange(0.25, 8.0),
     default=vdb.VdbSettings().voxel_size,
     show_default=True,
     metavar="RADII",

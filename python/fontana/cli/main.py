@@ -49,6 +49,9 @@ for command in (
 
 def main() -> None:
     """Runs the command line and leaves with the exit code."""
+    _open_closed_streams()
+    if sys.stdout.errors == "strict":  # a name that cannot be shown ends no run
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         code = cli.main(prog_name="fontana", standalone_mode=False) or exit_codes.OK
     except click.exceptions.NoArgsIsHelpError as error:
@@ -58,12 +61,18 @@ def main() -> None:
         code = _say(exit_codes.BAD_INPUT, usage_sentence(error))
     except click.exceptions.Exit as error:
         code = error.exit_code
-    except BrokenPipeError:  # `fontana schema | head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except SystemExit:  # so click leaves when nobody reads on: `fontana schema | head`
         code = exit_codes.OK
     except (Exception, KeyboardInterrupt) as error:
         code = _report(error)
     sys.exit(code)
+
+
+def _open_closed_streams() -> None:
+    """`fontana run box >&-`: without it a frame's file might get the number of standard output."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115  (as long as the process)
 
 
 def _report(error: BaseException) -> int:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from fontana.cli.usage import Choice
+from fontana.cli.usage import Choice, FloatRange
 from fontana.gl.camera import Camera
 from fontana.gl.footage import Footage
 from fontana.gl.frame_data import COLOR_MAPS, COLOR_UNITS, STYLES, Look
@@ -37,7 +37,7 @@ _LOOK = Look()
 )
 @click.option(
     "--shutter",
-    type=click.FloatRange(0.0, 1.0),
+    type=FloatRange(0.0, 1.0),
     default=0.25,
     show_default=True,
     help="Share of a frame that water is exposed for; points are sharp.",
@@ -47,7 +47,7 @@ _LOOK = Look()
 @click.option("--color-range", "range_text", metavar="LOW,HIGH", help="Values at the ends. [default: those of the run]")
 @click.option("--color-map", type=Choice(COLOR_MAPS), default=_LOOK.color_map, show_default=True)
 @click.option("--legend/--no-legend", default=True, help="Say what the colours of points mean.")
-@click.option("--fps", type=click.FloatRange(0.1, 1000), help="Of a film. [default: the run's]")
+@click.option("--fps", type=FloatRange(0.1, 1000), help="Of a film. [default: the run's]")
 @click.option("--restart", is_flag=True, help="Draw pictures again that are there, and replace foreign ones.")
 @click.option("--json", "as_json", is_flag=True, help="One JSON object a line instead of text.")
 @click.option("--quiet", is_flag=True, help="Say nothing but errors.")

@@ -11,7 +11,7 @@ import click
 
 from fontana.cli.usage import Choice
 from fontana.formats import FORMATS
-from fontana.overrides import parse_assignment
+from fontana.overrides import parse_assignments
 from fontana.roofline import gpus
 from fontana.runs.estimate import estimate, print_estimate
 from fontana.runs.manifest import Manifest
@@ -108,7 +108,7 @@ def run(
       fontana run fountain_rock --dry-run
       fontana run box --profile --roofline H100
     """
-    overrides = dict(parse_assignment(text) for text in assignments)
+    overrides = parse_assignments(assignments)
     overrides |= _settings(backend, threads, frames)
     if neighbors:
         overrides["solver.neighbors"] = neighbors

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import click
 
 from fontana.errors import clean
@@ -16,6 +18,16 @@ class Choice(click.Choice):
         near = suggestion(str(value), words)
         hint = near if near.startswith("; did") else ""
         return f'"{clean(str(value))}" is not one of {", ".join(words)}{hint}'
+
+
+class FloatRange(click.FloatRange):
+    """click's, which lets NaN through, and infinity where there is no bound."""
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        number = super().convert(value, param, ctx)
+        if not math.isfinite(number):
+            self.fail(f"{number} is not a finite number", param, ctx)
+        return number
 
 
 def usage_sentence(error: click.ClickException) -> str:

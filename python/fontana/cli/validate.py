@@ -14,6 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from fontana.cli.information import print_table
 from fontana.cli.usage import Choice
 from fontana.errors import BeyondLimit, beyond
+from fontana.runs.standard_output import printing
 from fontana.tables import parameters
 from fontana.validate import SIZES, Session, case_names, find_case
 
@@ -88,7 +89,8 @@ def _run(session: Session, resume: bool, as_json: bool) -> list[dict]:
             for result in session.run(tell, resume):
                 results.append(result)
                 if not as_json:
-                    _print(result)
+                    with printing():
+                        _print(result)
         except KeyboardInterrupt:
             done = ", ".join(result["case"] for result in results) or "none"
             again = shlex.join([*session.command, *([] if resume else ["--resume"])])

@@ -8,7 +8,7 @@ import click
 
 from fontana import _core
 from fontana.cli.usage import Choice
-from fontana.overrides import parse_assignment
+from fontana.overrides import parse_assignments
 from fontana.render.options import parse_size
 from fontana.scene import load_scene
 from fontana.tables import parameters
@@ -41,7 +41,7 @@ def view(
       fontana view my_scene.json --set fluid=honey --backend opencl
       fontana view out/fountain
     """
-    overrides = dict(parse_assignment(text) for text in assignments)
+    overrides = parse_assignments(assignments)
     overrides |= {"solver.backend": backend} if backend else {}
     overrides |= {"solver.neighbors": neighbors} if neighbors else {}
     from fontana.viewer.app import open_viewer  # libraries that only the window needs

@@ -5,6 +5,7 @@ Processes, not threads: encoding files holds Python's lock, and a library that d
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import signal
@@ -120,13 +121,24 @@ def _run(tasks: list[_Task], make: FrameMaker, jobs: int, stop: StopSignals) -> 
         try:
             while at_work or (waiting and not stop.requested):
                 while waiting and len(at_work) < jobs and not stop.requested:
-                    at_work.add(pool.submit(_work, waiting.pop(), make))
+                    with _interrupts_held():  # a process that is about to begin has not got to _begin_worker yet
+                        at_work.add(pool.submit(_work, waiting.pop(), make))
                 done, at_work = wait(at_work, return_when=FIRST_COMPLETED)
                 for future in done:
                     if not _was_ended(future, stop):
                         yield _entry_of(future)
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
+
+
+@contextlib.contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Ctrl-C comes after the `with` block; processes that begin in it never see one."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _was_ended(future: Future, stop: StopSignals) -> bool:

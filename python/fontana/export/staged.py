@@ -20,8 +20,10 @@ _NEXT_TO_NOTHING = 2**20  # bytes: less than one write of those libraries
 def staged(path: Path) -> Iterator[Path]:
     """A path to write to in the `with` block; the file moves to `path` at its end, or is removed on an error.
 
-    Raises IoError if that fails, or if the block raises an OSError or RuntimeError, which is what those writers raise.
+    Raises IoError if that fails, or if the block raises an OSError or RuntimeError, which is what those writers raise;
+    BadInput for a name that is not UTF-8, which they do not take.
     """
+    _check_name(path)
     temporary = path.with_name(f".{path.stem}.{os.getpid()}.tmp{path.suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -40,6 +42,15 @@ def staged(path: Path) -> Iterator[Path]:
             temporary.unlink()
 
 
+def _check_name(path: Path) -> None:
+    try:
+        str(path).encode()
+    except UnicodeEncodeError as error:
+        raise _core.BadInput(
+            f'-o "{path}": expected a name in UTF-8, the only ones that writers of {path.suffix} take'
+        ) from error
+
+
 def _sync(path: Path, flags: int) -> None:
     number = os.open(path, flags)
     try:
@@ -50,6 +61,8 @@ def _sync(path: Path, flags: int) -> None:
 
 def _reason(error: Exception, folder: Path) -> str:
     """The system's word where there is one; the libraries do not pass it on, a full disk least of all."""
+    if isinstance(error, FileExistsError):
+        return f'"{folder}" is a file, not a folder'
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     with contextlib.suppress(OSError):

@@ -23,8 +23,15 @@ _FILE = {
 }
 _FRAME = {
     "type": "object",
-    "required": ["frame", "files"],
-    "properties": {"frame": {"type": "integer", "minimum": 1}, "files": {"type": "array", "items": _FILE}},
+    "required": ["frame", "time", "particles", "files"],
+    "properties": {
+        "frame": {"type": "integer", "minimum": 1},
+        "time": {"type": "number"},
+        "particles": {"type": "integer"},
+        "substeps": {"type": "integer"},
+        "seconds": {"type": "number"},
+        "files": {"type": "array", "items": _FILE, "minItems": 1},
+    },
 }
 _SCHEMA = {
     "type": "object",

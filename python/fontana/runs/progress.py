@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from fontana.runs.standard_output import OutputConsole, print_json, printing
 from fontana.runs.text import clock, data_size
 
 
@@ -40,7 +39,7 @@ class Lines(Quiet):
     """A line a frame."""
 
     def __init__(self) -> None:
-        self.console = Console(highlight=False, soft_wrap=True)
+        self.console = OutputConsole(highlight=False, soft_wrap=True)
         self._begin, self._made, self._left, self._total = time.monotonic(), 0, 0, 0
 
     def note(self, sentence: str) -> None:
@@ -67,7 +66,8 @@ class Lines(Quiet):
         self._print(f"  files  {_describe(files)}")
 
     def _print(self, text: str) -> None:
-        self.console.print(text, markup=False)
+        with printing():
+            self.console.print(text, markup=False)
 
 
 class Bar(Lines):
@@ -102,22 +102,19 @@ class Json(Quiet):
     """One JSON object a line: {"event": "start" | "note" | "frame" | "skipped" | "finish" | "error", ...}."""
 
     def note(self, sentence: str) -> None:
-        self._emit("note", message=sentence)
+        print_json("note", message=sentence)
 
     def start(self, what: str, total: int, done: int) -> None:
-        self._emit("start", what=what, frames=total, done=done)
+        print_json("start", what=what, frames=total, done=done)
 
     def frame(self, entry: dict) -> None:
-        self._emit("frame", **{name: value for name, value in entry.items() if name != "text"})
+        print_json("frame", **{name: value for name, value in entry.items() if name != "text"})
 
     def skip(self, frame: int, reason: str) -> None:
-        self._emit("skipped", frame=frame, message=reason)
+        print_json("skipped", frame=frame, message=reason)
 
     def finish(self, files: Sequence[Path]) -> None:
-        self._emit("finish", files=[str(path) for path in files])
-
-    def _emit(self, event: str, **values: object) -> None:
-        print(json.dumps({"event": event} | values), flush=True)
+        print_json("finish", files=[str(path) for path in files])
 
 
 def _describe(files: Sequence[Path]) -> str:

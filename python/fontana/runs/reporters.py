@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 from collections import deque
 
-from rich.console import Console, Group
+from rich.console import Group
 from rich.live import Live
 from rich.progress import BarColumn, Progress, TextColumn
 from rich.text import Text
@@ -17,6 +16,7 @@ from fontana.bench import print_table
 from fontana.launch_profile import profile_notes, profile_table
 from fontana.runs.folder import RunFolder
 from fontana.runs.manifest import MANIFEST_NAME, Manifest
+from fontana.runs.standard_output import OutputConsole, print_json, printing
 from fontana.runs.text import clock, describe_device, describe_fluid, frame_details, length, pace_text
 from fontana.scene import Scene
 
@@ -49,11 +49,11 @@ class JsonReporter(Reporter):
     """One JSON object a line: {"event": "start" | "note" | "frame" | "profile" | "finish" | "error", ...}."""
 
     def note(self, sentence: str) -> None:
-        self._emit("note", message=sentence)
+        print_json("note", message=sentence)
 
     def start(self, scene: Scene, simulation: _core.Simulation, folder: RunFolder, done: int) -> None:
         device = simulation.device()
-        self._emit(
+        print_json(
             "start",
             scene=scene.name,
             out=str(folder.path),
@@ -65,22 +65,19 @@ class JsonReporter(Reporter):
         )
 
     def frame(self, record: dict, frame_count: int) -> None:
-        self._emit("frame", **record)
+        print_json("frame", **record)
 
     def finish(self, simulation: _core.Simulation, folder: RunFolder, manifest: Manifest, advice: str) -> None:
         if "profile" in manifest.data:
-            self._emit("profile", **manifest.data["profile"])
-        self._emit("finish", frames=len(manifest.frames), manifest=str(folder.path / MANIFEST_NAME))
-
-    def _emit(self, event: str, **values: object) -> None:
-        print(json.dumps({"event": event} | values), flush=True)
+            print_json("profile", **manifest.data["profile"])
+        print_json("finish", frames=len(manifest.frames), manifest=str(folder.path / MANIFEST_NAME))
 
 
 class LineReporter(Reporter):
     """A line a frame: for logs, and wherever there is no terminal."""
 
     def __init__(self) -> None:
-        self.console = Console(highlight=False)
+        self.console = OutputConsole(highlight=False)
         self._pace = Pace()
 
     def note(self, sentence: str) -> None:
@@ -123,7 +120,8 @@ class LineReporter(Reporter):
             self.print(note)
 
     def print(self, text: str) -> None:
-        self.console.print(text, markup=False, soft_wrap=True)
+        with printing():
+            self.console.print(text, markup=False, soft_wrap=True)
 
 
 class BarReporter(LineReporter):
