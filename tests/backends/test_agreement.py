@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from fontana import _core
+
 # Relative to the largest value; float32 sums of 30 neighbours in another order or with contraction.
 DENSITY_TOLERANCE = 2e-6
 ACCELERATION_TOLERANCE = 2e-5
@@ -66,6 +68,12 @@ def test_processors_without_avx2_get_the_same_answer(monkeypatch, make_simulatio
         assert ("baseline" in simulation.device().driver) == (instructions == "baseline")
         densities.append(simulation.read("density"))
     assert relative_difference(*densities) < DENSITY_TOLERANCE
+
+
+def test_instructions_that_are_none_are_refused(monkeypatch, make_simulation):
+    monkeypatch.setenv("FONTANA_CPU_INSTRUCTIONS", "avx1024")
+    with pytest.raises(_core.BadInput, match="'avx1024'; expected baseline, avx2 or best"):
+        make_simulation("cpu").device()
 
 
 def test_automatic_steps_are_the_same_on_every_backend(backend, make_simulation, random_block):

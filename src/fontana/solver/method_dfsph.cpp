@@ -18,7 +18,8 @@ constexpr float k_anderson_relaxation = 0.65f;
 constexpr float k_coarse_relaxation = 0.5f;
 constexpr float k_worse = 4.0f;  // times the first residual: a coarse correction that leads there does not help
 constexpr std::uint32_t k_least_iterations = 2;
-constexpr std::uint32_t k_lanes = 1024, k_folded_lanes = 32;
+// Lanes that add up the sums: one for so many particles, up to what fills a large GPU; and what they are folded into.
+constexpr std::uint32_t k_particles_a_lane = 64, k_lanes = 16384, k_folded_lanes = 128;
 constexpr std::size_t k_depth = 2;
 
 // As in kernels/pressure_solve.h.
@@ -143,7 +144,7 @@ class Dfsph : public Method {
     void iterate(Substep& s, std::uint32_t k) {
         const std::size_t count = s.particles.count();
         const auto n = static_cast<std::uint32_t>(count);
-        const std::uint32_t lanes = std::min(k_lanes, std::max<std::uint32_t>(1, n / 4));
+        const std::uint32_t lanes = std::min(k_lanes, std::max<std::uint32_t>(1, n / k_particles_a_lane));
         const std::uint32_t folded = std::min(k_folded_lanes, lanes), is_first = k == 1 ? 1 : 0;
         const bool accelerated = s.parameters.solver_pressure_solver != "jacobi";
         const float relaxation = with_coarse_  ? k_coarse_relaxation

@@ -74,9 +74,12 @@ KernelTable choose_kernels(bool strict) {
     constexpr auto count = static_cast<std::size_t>(Kernel::count);
     if (strict) return {{strict_kernels(), strict_kernels() + count}, "strict arithmetic"};
 #if defined(__x86_64__)
-    // "baseline" or "avx2" runs what a lesser processor would: for tests, and to tell a compiler's fault from ours.
+    // "baseline" or "avx2", not "best", runs what a lesser processor would: for tests, and to tell a compiler's fault
+    // from ours.
     const char* given = std::getenv("FONTANA_CPU_INSTRUCTIONS");
-    const std::string wanted = given ? given : "";
+    const std::string wanted = given ? given : "best";
+    if (wanted != "baseline" && wanted != "avx2" && wanted != "best")
+        fail(FONTANA_BAD_INPUT, "FONTANA_CPU_INSTRUCTIONS is '" + wanted + "'; expected baseline, avx2 or best");
     if (wanted != "baseline" && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) {
         const bool is_wider = wanted != "avx2" && __builtin_cpu_supports("avx512f");
         KernelTable table{{avx2_kernels(), avx2_kernels() + count}, is_wider ? "AVX-512" : "AVX2", k_list_group};
