@@ -12,7 +12,7 @@ The cells of the grid are two spacings wide, so a lattice in the middle of the a
 every cell where its side is even, which a processor's branch prediction learns, and some on the borders of cells where
 it is odd, where mueller on OpenCL takes longer a particle. A quarter of a spacing aside, both meet the cells alike, as
 each other's mirror image. A little jitter takes the order out of the distances; with more, dfsph would throw apart
-those that come too close, and time a spray.
+those that come too close: the water would be calm at no count, or at some.
 """
 
 from __future__ import annotations
@@ -132,7 +132,7 @@ def build(method: str, backend: str, count: int, threads: int) -> _core.Simulati
         simulation.set(name, value)
     side = SPACING * round(count ** (1 / 3))
     aside = SPACING / 4
-    simulation.add_emitter("block", centre=(aside, side / 2, aside), size=(side, side, side), jitter=0.15)
+    simulation.add_emitter("block", centre=(aside, side / 2, aside), size=(side, side, side), jitter=0.02)
     simulation.add_collider("plane_y")
     return simulation
 
