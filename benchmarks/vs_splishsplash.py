@@ -5,7 +5,8 @@
 The peer runs in an environment of its own (splishsplash_run.py says how to make one). Prints both sides' wall time,
 steps, errors, front and centre of mass, and the ratio of wall times, theirs over ours: the median over the repeats. The
 largest density error of any particle is that of every step, of which the median, the 95th percentile and the largest
-are printed. The peer has no bound on it; ours has one where --largest-error asks for it.
+are printed, and what a sample every 0.1 s sees of it. The peer has no bound on it; ours has one where --largest-error
+asks for it.
 """
 
 from __future__ import annotations
@@ -24,11 +25,12 @@ from rich.table import Table
 
 from fontana import _core, bench
 
+SAMPLE = 0.1  # s, between two samples; ours end a frame there
 HERE = Path(__file__).resolve().parent
 PRELOAD = "/lib/x86_64-linux-gnu/libGLdispatch.so.0"
 FIELDS = (
     "seconds", "steps", "iterations", "density_error_mean", "density_error_max", "density_error_max_median",
-    "density_error_max_95", "front", "centre_of_mass",
+    "density_error_max_95", "density_error_max_sampled", "front", "centre_of_mass",
 )  # fmt: skip
 
 
@@ -79,7 +81,7 @@ def run_ours(per_metre: int, seconds: float, largest_error: float, threads: int)
     """The same tank: where their walls have particles, 0.75 spacings outside, our planes have their first layer."""
     simulation = _core.Simulation()
     spacing = 1.0 / per_metre
-    frames = 10
+    frames = max(1, round(seconds / SAMPLE))
     for name, value in {
         "fluid.method": "dfsph", "fluid.particle_spacing": spacing, "fluid.viscosity": 10.0,  # their 0.01 m^2/s
         "solver.backend": "cpu", "solver.threads": threads, "solver.quality": "custom", "solver.density_error": 0.05,
@@ -93,12 +95,13 @@ def run_ours(per_metre: int, seconds: float, largest_error: float, threads: int)
         simulation.add_collider(kind, centre=(-gap, -gap, -gap), **slippery)
     simulation.add_collider("plane_x", centre=(2.0 + gap, 0.0, 0.0), flip=True, **slippery)
     simulation.add_collider("plane_z", centre=(0.0, 0.0, 1.0 + gap), flip=True, **slippery)
-    largest, watching = [], 0.0
+    largest, times, watching = [], [], 0.0
 
-    def after_step(_: float) -> None:
+    def after_step(share: float) -> None:
         """The error at every step; the time it takes is not counted, there as here."""
         nonlocal watching
         begin = time.perf_counter()
+        times.append((simulation.frame + share) * seconds / frames)
         largest.append(max(0.0, float(simulation.read("density").max()) / 1000.0 - 1.0))
         watching += time.perf_counter() - begin
 
@@ -113,7 +116,7 @@ def run_ours(per_metre: int, seconds: float, largest_error: float, threads: int)
         "iterations": sum(report.iterations for report in reports) / steps,
         "seconds": wall,
         "density_error_mean": sum(report.density_error_mean * report.substeps for report in reports) / steps,
-        **spread(largest),
+        **spread(largest, times),
         "front": float(simulation.read("position")[:, 0].max()),
         "centre_of_mass": list(reports[-1].centre_of_mass),
     }
@@ -127,12 +130,15 @@ def run_peer(python: str, per_metre: int, seconds: float, threads: int) -> dict:
         last = (result.stderr.strip().splitlines() or ["no message"])[-1]
         raise click.ClickException(f"SPlisHSPlasH did not run ({last}); see benchmarks/splishsplash_run.py")
     found = json.loads(result.stdout.strip().splitlines()[-1])
-    return found | spread(found.pop("density_errors"))
+    return found | spread(found.pop("density_errors"), found.pop("times"))
 
 
-def spread(errors: list[float]) -> dict:
-    """Of the largest error of any particle, at every step."""
+def spread(errors: list[float], times: list[float]) -> dict:
+    """Of the largest error of any particle, at every step, and after the first step that reaches each sample's time."""
+    count = round(times[-1] / SAMPLE)
+    reached = [next(k for k, t in enumerate(times) if t > n * SAMPLE - 1e-6) for n in range(1, count + 1)]
     return {
+        "density_error_max_sampled": [errors[k] for k in reached],
         "density_error_max": max(errors),
         "density_error_max_median": statistics.median(errors),
         "density_error_max_95": statistics.quantiles(errors, n=20)[-1],
