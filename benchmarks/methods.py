@@ -30,8 +30,8 @@ COLOURS = {"mueller": "#7aa6d8", "wcsph": "#1f5fa8", "pcisph": "#eab676", "dfsph
 
 @click.command(help=__doc__.split("\n\n")[0])
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=RESULTS, help="Folder of the results.")
-@click.option("--particles", default=16384, show_default=True, type=click.IntRange(100), help="About so many.")
-@click.option("--seconds", default=0.5, show_default=True, type=click.FloatRange(0.02), help="Simulated time.")
+@click.option("--particles", default=8192, show_default=True, type=click.IntRange(100), help="About so many.")
+@click.option("--seconds", default=0.3, show_default=True, type=click.FloatRange(0.02), help="Simulated time.")
 @click.option(
     "--error",
     "errors",
