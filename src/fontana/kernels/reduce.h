@@ -10,7 +10,8 @@ FN float max_or_nan(float a, float b) { return a < b || b != b ? b : a; }
 
 // What a particle's speed counts for in the length of a step. One that is alone, with neither a neighbour nor a wall
 // within the support radius of two spacings, may travel a whole spacing and meets nobody closer than that, where others
-// may travel 0.4 of one. Otherwise a single droplet would slow down all of a splash.
+// may travel 0.4 of one. Otherwise a single droplet would slow down all of a splash. (With mueller walls have no
+// density and only collide: there a droplet near a wall is alone too.)
 FN float travel_weight(const StepConstants c, float mass, float density) {
     return density <= 1.01f * mass * c.own_value ? 0.4f : 1.0f;
 }

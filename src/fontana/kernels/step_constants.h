@@ -6,24 +6,24 @@
 #include "dialect.h"
 
 typedef struct StepConstants {
-    float support_radius;                   // m, where W becomes zero
-    float support_radius_squared;           // m^2
-    float rest_density;                     // kg/m^3
-    float pressure_constant;                // m^2/s^2, k of eq. 2.11
-    float minimum_pressure;                 // of p, and of u: 0, or -infinity where it may be negative
-    float viscosity;                        // Pa s
-    float surface_tension;                  // N/m
-    float poly6_scale;                      // 315 / (64 pi H^9)
-    float spiky_gradient_scale;             // 45 / (pi H^6)
-    float viscosity_laplacian_scale;        // 45 / (pi H^6)
-    float poly6_gradient_scale;             // 945 / (32 pi H^9)
-    float kernel_scale;                     // 1/m^3, of the spline (spline.h)
-    float own_value;                        // 1/m^3, W(0) of the kernel that the density is summed with
-    float gradient_scale;                   // of its gradient over the rest density, m^3/kg times 1/m^4 or 1/m^5
-    float inverse_support_radius;           // 1/m
-    float inverse_rest_density;             // m^3/kg
-    float inverse_dt;                       // 1/s
-    float minimum_normal;                   // 1/m: below this the colour field's gradient is no surface
+    float support_radius;             // m, where W becomes zero
+    float support_radius_squared;     // m^2
+    float rest_density;               // kg/m^3
+    float pressure_constant;          // m^2/s^2, k of eq. 2.11
+    float minimum_pressure;           // of p, and of u: 0, or -infinity where it may be negative
+    float viscosity;                  // Pa s
+    float surface_tension;            // N/m
+    float poly6_scale;                // 315 / (64 pi H^9)
+    float spiky_gradient_scale;       // 45 / (pi H^6)
+    float viscosity_laplacian_scale;  // 45 / (pi H^6)
+    float poly6_gradient_scale;       // 945 / (32 pi H^9)
+    float kernel_scale;               // 1/m^3, of the spline (spline.h)
+    float own_value;                  // 1/m^3, W(0) of the kernel that the density is summed with
+    float gradient_scale;             // of the spline's gradient over the rest density, m^3/kg times 1/m^4 or 1/m^5
+    float inverse_support_radius;     // 1/m
+    float inverse_rest_density;       // m^3/kg
+    float inverse_dt;                 // 1/s
+    float minimum_normal;             // 1/m: below this the colour field's gradient is no surface
     float gravity_x, gravity_y, gravity_z;  // m/s^2
     float wind_x, wind_y, wind_z;           // m/s
     float wind_coupling;                    // 1/s

@@ -34,10 +34,10 @@ double convergence_limit(const Parameters& p, double longest, double density_err
 }
 
 // s. The step that keeps the error of the densest particle near its bound. A solve is linear in the step, so that the
-// error a step leaves grows with the step's square. The three numbers are what held 1.2 % in the dam break of
-// benchmarks/vs_splishsplash.py: the error of the longest step where water first meets a floor; the share of the bound
-// from which on steps shrink, as a few in a row take a particle in a corner to it; and the least, for who is crowded
-// for good.
+// error a step leaves grows with the step's square. The three numbers are fitted to the dam break of
+// benchmarks/vs_splishsplash.py, whose worst step passes a bound of 1 % by half: the error of the longest step where
+// water first meets a floor; the share of the bound from which on steps shrink, as a few in a row take a particle in a
+// corner to it; and the least, for who is crowded for good.
 double density_error_limit(const Parameters& p, double longest, double density_error) {
     constexpr double k_first_contact = 0.04, k_begin = 1.0 / 16.0, k_least = 0.2;
     const double bound = 0.01 * p.solver_density_error_max;
