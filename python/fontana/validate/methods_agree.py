@@ -72,4 +72,4 @@ def draw(axes: object, curves: dict) -> None:
     axes.set(xlabel="time, s", ylabel="kinetic energy, J")
 
 
-CASE = Case("Dam break by every method", {SMALL: 10, FULL: 24}, measure, draw)
+CASE = Case("Dam break by every method", {SMALL: 16, FULL: 24}, measure, draw)
