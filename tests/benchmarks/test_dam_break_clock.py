@@ -1,5 +1,6 @@
 """benchmarks/dam_break_clock.py with few particles: what it writes, and that its gate is one."""
 
+import importlib.util
 import json
 import subprocess
 import sys
@@ -19,3 +20,12 @@ def test_a_gate_that_is_pulled_up_makes_the_front_earlier(tmp_path):
     at_once, slowest = rows["let go at once"], rows["gate, gone in 1 sqrt(2 H / g)"]
     assert slowest["tip_mean"] > 1.3 * at_once["tip_mean"]
     assert slowest["lobovsky"]["ahead_first"] > at_once["lobovsky"]["ahead_first"] + 1.0
+
+
+def test_a_closed_gate_holds_the_water():
+    specification = importlib.util.spec_from_file_location("dam_break_clock", SCRIPT)
+    script = importlib.util.module_from_spec(specification)
+    sys.modules["dam_break_clock"] = script  # a dataclass asks for its module by name
+    specification.loader.exec_module(script)
+    _, fronts = script.foremost(script.Setup(1 / 8, seconds=0.5, gate=1e6))
+    assert fronts[-1] < 1.0 + 0.5 / 8
