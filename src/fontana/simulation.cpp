@@ -243,6 +243,7 @@ fontana_frame_report Simulation::step_frame() {
         if (is_stop_asked(std::min(1.0, run_.frame_time / duration)) && !is_done())
             fail(FONTANA_INTERRUPTED, "interrupted in frame " + std::to_string(run_.frames_done + 1));
     }
+    solver().end_frame(parameters, colliders_, static_cast<double>(run_.frames_done + 1) * duration);
     solver().backend().finish();
     return finish_frame(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
 }
@@ -267,7 +268,7 @@ fontana_frame_report Simulation::finish_frame(double seconds) {
     report.dt_max = run_.dt_max;
     report.dt_limit = run_.dt_limit;
     report.density_error_mean = run_.density_error_sum / std::max(1u, run_.substeps);
-    report.density_error_max = run_.density_error_max;
+    report.density_error_max = std::max(run_.density_error_max, d.density_error_max);
     report.max_speed = d.max_speed / scale;
     report.kinetic_energy = d.kinetic_energy;
     for (int k = 0; k < 3; ++k) report.centre_of_mass[k] = d.centre_of_mass[k] / scale;

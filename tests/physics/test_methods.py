@@ -75,6 +75,7 @@ def test_fast_arithmetic_agrees_over_one_substep(backend, make_simulation, rando
             time__timestep=5e-4,
             solver__quality="custom",
             solver__density_error=1e-4,  # so tight that what the solves leave is not what is compared
+            solver__density_error_max=0.0,  # who lies too close here would be moved farther than lists bear
         )
         position, velocity = random_block(6, SPACING)  # a jittered cube that has just landed beside the water
         simulation.add_particles(position * np.float32(0.8) + np.array([0.6, 0.0, 0.0], np.float32), velocity)
@@ -137,17 +138,14 @@ def test_the_density_error_is_the_quality(make_simulation, method):
     assert list(errors.values()) == sorted(errors.values(), reverse=True)
 
 
-def test_the_largest_density_error_can_be_aimed_at(make_simulation):
-    """Thin water strikes the walls of its tank: the bound is an aim, and what it must do is reduce the error."""
-    largest, limits = {}, {}
-    for percent in (0.0, 2.0):
+def test_the_largest_density_error_has_a_bound(make_simulation):
+    """Thin water strikes the walls of its tank and their corners."""
+    largest = {}
+    for percent in (0.0, 1.0):
         settings = {"fluid__particle_spacing": 0.025, "solver__density_error_max": percent}
         simulation = dam_break(make_simulation, "dfsph", **settings)
-        reports = [simulation.step_frame() for _ in range(8)]
-        largest[percent] = max(report.density_error_max for report in reports)
-        limits[percent] = {report.dt_limit for report in reports}
-    assert largest[0.0] > 0.1 and largest[2.0] < 0.4 * largest[0.0], largest
-    assert "density_error" in limits[2.0] and "density_error" not in limits[0.0]
+        largest[percent] = max(simulation.step_frame().density_error_max for _ in range(8))
+    assert largest[0.0] > 0.1 and largest[1.0] < 0.012, largest
 
 
 def test_better_solvers_need_fewer_iterations(make_simulation):

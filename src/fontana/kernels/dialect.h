@@ -29,6 +29,7 @@
 #define ATOMIC_MAXIMUM(p, value) atomic_max((p), (value))
 #define ATOMIC_ADD(p, value) atomic_add((p), (value))
 #define ATOMIC_INCREMENT(p) atomic_inc(p)
+#define STORE_SAME(p, value) (*(p) = (value))
 #define GROUP_KERNEL __kernel __attribute__((reqd_work_group_size(FONTANA_GROUP_SIZE, 1, 1)))
 #define LOCAL __local
 #define LANE_INDEX ((uint)get_local_id(0))
@@ -56,6 +57,7 @@
 #define ATOMIC_MAXIMUM(p, value) atomicMax((p), (value))
 #define ATOMIC_ADD(p, value) atomicAdd((p), (value))
 #define ATOMIC_INCREMENT(p) atomicAdd((p), 1u)
+#define STORE_SAME(p, value) (*(p) = (value))
 // The 1, a group to a unit at the least, is what keeps NVIDIA's assembler from spilling registers to fit more of them.
 #define GROUP_KERNEL extern "C" __global__ __launch_bounds__(FONTANA_GROUP_SIZE, 1)
 #define LOCAL __shared__
@@ -79,6 +81,8 @@ typedef unsigned int uint;
 #define INVERSE_SQRT(a) (1.0f / __builtin_sqrtf(a))
 #define FLOOR(a) __builtin_floorf(a)
 #define ATOMIC_ADD(p, value) __atomic_fetch_add((p), (value), __ATOMIC_RELAXED)
+// Where several threads may store, all of them the same value.
+#define STORE_SAME(p, value) __atomic_store_n((p), (value), __ATOMIC_RELAXED)
 #define MAKE_FLOAT4(x, y, z, w) (float4{(x), (y), (z), (w)})
 #define FONTANA_PACKED_LISTS  // as a processor has them (neighbor_list.h)
 

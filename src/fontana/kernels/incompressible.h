@@ -36,17 +36,23 @@ FN float4 viscosity_of(const StepConstants c, Real3 shear) {
     return MAKE_FLOAT4(scale * shear.x, scale * shear.y, scale * shear.z, 0.0f);
 }
 
+// For kernels that may leave out particles: whether to look at `chosen`, and then who is in, 1, or out, 0.
+FN bool is_chosen(uint only_chosen, GLOBAL const uint* RESTRICT chosen, uint i) {
+    return only_chosen == 0u || chosen[i] != 0u;
+}
+
 // All that a substep has to know before pressure acts, in one visit to every neighbour. `position`: x, y, z, m. Out:
 // the density; `factor` = S, 1 / D (0 where a particle feels no pressure); `wall_rate`; `rate`, that of the relative
 // density under the present velocities (1/s); and the acceleration by viscosity.
 KERNEL void sum_neighborhood(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
                              GLOBAL const float4* RESTRICT velocity, GLOBAL const uint* RESTRICT list_start,
                              GLOBAL const short* RESTRICT list, GLOBAL const ColliderConstants* RESTRICT collider,
+                             const uint only_chosen, GLOBAL const uint* RESTRICT chosen,
                              GLOBAL float* RESTRICT density_out, GLOBAL float4* RESTRICT factor,
                              GLOBAL float* RESTRICT wall_rate, GLOBAL float* RESTRICT rate,
                              GLOBAL float4* RESTRICT viscous) {
     const uint i = THREAD_INDEX;
-    if (i >= c.particle_count) return;
+    if (i >= c.particle_count || !is_chosen(only_chosen, chosen, i)) return;
     const float4 x_i = position[i], v_i = velocity[i];
     NeighborhoodSums sums = no_neighborhood();
     sums.density = x_i.w * kernel_value(c, 0.0f);
@@ -98,9 +104,10 @@ FN float4 gradient_of(const StepConstants c, float u_i, float4 s, Real3 sum) {
 KERNEL void pressure_gradient(THREAD_ARG const StepConstants c, GLOBAL const float* RESTRICT u,
                               GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list,
                               GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT factor,
+                              const uint only_chosen, GLOBAL const uint* RESTRICT chosen,
                               GLOBAL float4* RESTRICT gradient) {
     const uint i = THREAD_INDEX;
-    if (i >= c.particle_count) return;
+    if (i >= c.particle_count || !is_chosen(only_chosen, chosen, i)) return;
     const float4 x_i = position[i];
     Real3 sum = zero_vector();
     for (Walk walk = first_neighbor(c, i, list_start, list); walk.is_there; walk = next_neighbor(c, walk, list)) {

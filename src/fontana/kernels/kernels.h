@@ -1,5 +1,6 @@
 // All device kernels, in the order a substep uses them. kernel_list.def names them for the host.
 #include "cells.h"
+#include "crowding.h"
 #include "density.h"
 #include "dialect.h"
 #include "fluid_force.h"

@@ -114,6 +114,12 @@ double density_error_tolerance(const Parameters& p) {
     return 0.01 * p.solver_density_error;
 }
 
+double largest_density_error(const Parameters& p) {
+    constexpr double k_least = 10.0;  // times the mean: closer to it than that are more than a few
+    const double bound = 0.01 * p.solver_density_error_max;
+    return bound == 0.0 ? 0.0 : std::max(bound, k_least * density_error_tolerance(p));
+}
+
 double pcisph_delta(const Parameters& p) {
     const StepConstants c = spline_constants(p);
     const double support = support_radius(p), spacing = std::max(p.fluid_particle_spacing, support / k_most_reach);

@@ -25,6 +25,8 @@ double particle_mass(const Parameters& parameters);
 double frame_duration(const Parameters& parameters);
 // Mean density error at which a pressure solve stops, as a share: solver.quality or solver.density_error.
 double density_error_tolerance(const Parameters& parameters);
+// Density error of any one particle, as a share, above which it is moved off its neighbours; 0: never.
+double largest_density_error(const Parameters& parameters);
 // m^2 for a full neighbourhood: 1 / (2 (|sum V grad W|^2 + sum |V grad W|^2)), over a lattice at the spacing (PCISPH).
 double pcisph_delta(const Parameters& parameters);
 // Whether the pressure follows from the density by an equation of state: such a fluid has a speed of sound.

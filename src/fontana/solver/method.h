@@ -63,6 +63,10 @@ class Method {
     virtual ~Method() = default;
     // The particles are sorted and the grid is in the constants; afterwards they are where they are after dt.
     virtual void advance(Substep& substep) = 0;
+    // Whether the last substep may have crowded particles. Then they are sorted again before their frame is done, and
+    // moved apart; and all that hosts read is computed anew.
+    virtual bool may_be_crowded() const { return false; }
+    virtual void end_frame(Substep&) {}
 };
 
 // name: a choice of fluid.method.

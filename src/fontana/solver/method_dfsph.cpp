@@ -33,8 +33,7 @@ class Dfsph : public Method {
     explicit Dfsph(Backend& backend) : backend_(backend), operators_(backend), coarse_(backend) {}
 
     void advance(Substep& s) override {
-        reserve(s);
-        operators_.begin(s);
+        begin(s);
         s.choose_time_step();
         operators_.add_forces(s);
         residual_ = &s.particles.spare_words();
@@ -44,9 +43,23 @@ class Dfsph : public Method {
         operators_.compute_gradient(s, *pressure_);
         operators_.push(s);
         operators_.finish(s, *pressure_);
+        may_be_crowded_ = !is_calm(s);
+    }
+
+    bool may_be_crowded() const override { return may_be_crowded_; }
+
+    void end_frame(Substep& s) override {
+        begin(s);
+        operators_.refresh(s, u(1));
     }
 
  private:
+    void begin(Substep& s) {
+        reserve(s);
+        operators_.begin(s);
+        operators_.move_apart(s, {u(1), u(2), u(3), *state_});
+    }
+
     // Water whose fastest particle keeps within a fifth of a spacing in a step as long as they come.
     static bool is_calm(const Substep& s) {
         constexpr double k_calm = 0.2;
@@ -92,8 +105,7 @@ class Dfsph : public Method {
         const std::size_t count = s.particles.count();
         operators_.compute_rate(s);
         backend_.launch(Kernel::density_target, count, {s.constants, s.particles.density(), operators_.rate()});
-        backend_.launch(Kernel::load_warm_start, count,
-                        {static_cast<std::uint32_t>(count), s.particles.velocity(), operators_.factor(), u(1)});
+        operators_.load_warm_start(s, u(1));
         const auto most = static_cast<std::uint32_t>(s.parameters.solver_max_iterations);
         with_coarse_ = may_be_coarse(s) && long_waves_matter(s);
         const bool may_give_up = may_be_coarse(s) && !with_coarse_;
@@ -207,7 +219,7 @@ class Dfsph : public Method {
     Operators operators_;
     CoarseCorrection coarse_;
     std::unique_ptr<Buffer> workspace_, u_[k_depth + 1], step_[k_depth + 1];
-    bool with_coarse_ = false;
+    bool with_coarse_ = false, may_be_crowded_ = true;
     Buffer* pressure_ = nullptr;  // the result of the solve, one of u_
     Buffer* residual_ = nullptr;  // lent by the particles
     std::unique_ptr<Buffer> sums_, folded_sums_, state_;

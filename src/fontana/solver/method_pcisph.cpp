@@ -18,8 +18,7 @@ class Pcisph : public Method {
     explicit Pcisph(Backend& backend) : backend_(backend), operators_(backend) {}
 
     void advance(Substep& s) override {
-        reserve(s.particles.capacity());  // before anything moves: a frame that lacked memory can be tried again
-        operators_.begin(s);
+        begin(s);
         s.choose_time_step();
         operators_.add_forces(s);
         operators_.predict(s);
@@ -30,7 +29,20 @@ class Pcisph : public Method {
         operators_.finish(s, *u_);
     }
 
+    bool may_be_crowded() const override { return true; }
+
+    void end_frame(Substep& s) override {
+        begin(s);
+        operators_.refresh(s, *u_);
+    }
+
  private:
+    void begin(Substep& s) {
+        reserve(s.particles.capacity());  // before anything moves: a frame that lacked memory can be tried again
+        operators_.begin(s);
+        operators_.move_apart(s, {*u_, *predicted_, s.particles.spare_words(), *sums_});
+    }
+
     void solve(Substep& s) {
         const std::size_t count = s.particles.count();
         const double tolerance = density_error_tolerance(s.parameters);

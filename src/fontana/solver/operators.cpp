@@ -1,5 +1,7 @@
 #include "solver/operators.h"
 
+#include "solver/constants.h"
+
 namespace fontana {
 
 void Operators::borrow(Substep& s) {
@@ -13,9 +15,46 @@ void Operators::begin(Substep& s) {
     borrow(s);
     list_.build(s.particles, s.neighborhood, s.constants);
     s.place_walls();
+    sum_neighborhood(s, nullptr);
+}
+
+void Operators::sum_neighborhood(Substep& s, Buffer* chosen) {
     backend_.launch(Kernel::sum_neighborhood, s.particles.count(),
                     {s.constants, s.particles.position(), s.particles.velocity(), list_.start(), list_.list(),
-                     s.colliders.buffer(), s.particles.density(), *factor_, *wall_rate_, *rate_, *gradient_});
+                     s.colliders.buffer(), std::uint32_t{chosen != nullptr}, chosen ? *chosen : list_.start(),
+                     s.particles.density(), *factor_, *wall_rate_, *rate_, *gradient_});
+}
+
+void Operators::move_apart(Substep& s, const CrowdingWorkspace& workspace) {
+    // Where many are crowded it is for pressure to part them, over the steps: when a sixteenth of all has had its turn,
+    // or after 16 rounds, the rest waits. A few hundred cost little in any case.
+    constexpr std::size_t k_most_rounds = 16, k_part = 16, k_few = 500;
+    const std::size_t count = s.particles.count(), most = count / k_part + k_few;
+    const double bound = largest_density_error(s.parameters);
+    if (bound == 0.0) return;
+    std::size_t turns = 0;
+    for (std::size_t round = 0; round < k_most_rounds && turns < most; ++round) {
+        const std::size_t found = find_crowded(s, static_cast<float>(bound), workspace);
+        if (found == 0) return;
+        turns += found;
+        backend_.launch(Kernel::mark_crowded, count,
+                        {s.constants, workspace.lambda, list_.start(), list_.list(), workspace.moved});
+        compute_gradient(s, workspace.lambda, &workspace.moved);
+        backend_.launch(Kernel::move_apart, count,
+                        {s.constants, workspace.moved, *gradient_, list_.start(), list_.list(), s.particles.position(),
+                         workspace.changed});
+        sum_neighborhood(s, &workspace.changed);
+    }
+}
+
+std::uint32_t Operators::find_crowded(Substep& s, float bound, const CrowdingWorkspace& workspace) {
+    std::uint32_t found = 0;
+    backend_.write(workspace.found, &found, sizeof found);
+    backend_.launch(Kernel::find_crowded, s.particles.count(),
+                    {s.constants, bound, s.particles.density(), *factor_, workspace.lambda, workspace.moved,
+                     workspace.changed, workspace.found});
+    backend_.read(workspace.found, &found, sizeof found);
+    return found;
 }
 
 void Operators::compute_rate(Substep& s) {
@@ -24,9 +63,10 @@ void Operators::compute_rate(Substep& s) {
                      *wall_rate_, *rate_});
 }
 
-void Operators::compute_gradient(Substep& s, Buffer& u) {
+void Operators::compute_gradient(Substep& s, Buffer& u, Buffer* chosen) {
     backend_.launch(Kernel::pressure_gradient, s.particles.count(),
-                    {s.constants, u, list_.start(), list_.list(), s.particles.position(), *factor_, *gradient_});
+                    {s.constants, u, list_.start(), list_.list(), s.particles.position(), *factor_,
+                     std::uint32_t{chosen != nullptr}, chosen ? *chosen : list_.start(), *gradient_});
 }
 
 void Operators::push(Substep& s) {
@@ -44,9 +84,25 @@ void Operators::predict(Substep& s) {
                     {s.constants, s.particles.acceleration(), s.particles.velocity()});
 }
 
-void Operators::finish(Substep& s, Buffer& u) {
+void Operators::load_warm_start(Substep& s, Buffer& u) {
+    const std::size_t count = s.particles.count();
+    backend_.launch(Kernel::load_warm_start, count,
+                    {static_cast<std::uint32_t>(count), s.particles.velocity(), *factor_, u});
+}
+
+void Operators::store_pressure(Substep& s, Buffer& u) {
     backend_.launch(Kernel::store_pressure, s.particles.count(),
                     {s.constants, u, s.particles.density(), s.particles.velocity(), s.particles.pressure()});
+}
+
+void Operators::refresh(Substep& s, Buffer& u) {
+    add_forces(s);
+    load_warm_start(s, u);
+    store_pressure(s, u);
+}
+
+void Operators::finish(Substep& s, Buffer& u) {
+    store_pressure(s, u);
     s.place_colliders();
     backend_.launch(Kernel::advect, s.particles.count(),
                     {s.constants, s.colliders.buffer(), s.particles.position(), s.particles.velocity()});

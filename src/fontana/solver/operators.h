@@ -10,6 +10,11 @@
 
 namespace fontana {
 
+// What move_apart works in: a word a particle each, and one for all.
+struct CrowdingWorkspace {
+    Buffer &lambda, &moved, &changed, &found;
+};
+
 class Operators {
  public:
     explicit Operators(Backend& backend) : backend_(backend), list_(backend) {}
@@ -17,17 +22,25 @@ class Operators {
     // Lists, densities, S and D, with the walls where they are at the start of the substep; the rate() of the density
     // under the velocities as they are, and viscosity.
     void begin(Substep& substep);
+    // Moves particles apart until none is denser than solver.density_error_max, as far as they can be
+    // (kernels/crowding.h), and brings up to date what begin() has computed; right after it.
+    void move_apart(Substep& substep, const CrowdingWorkspace& workspace);
     // The acceleration by viscosity, surface tension and external forces; after choose_time_step, which looks at the
     // last one, and before gradient() is used, where viscosity waits.
     void add_forces(Substep& substep);
     // Rate of the relative density under the present velocities into rate(); 1/s.
     void compute_rate(Substep& substep);
-    // G u into gradient(); m/s^2.
-    void compute_gradient(Substep& substep, Buffer& u);
+    // At the end of a frame, after these two alone, what hosts read: acceleration, and pressure from the u that
+    // finish() left. `u` is written to.
+    void refresh(Substep& substep, Buffer& u);
+    // G u into gradient(); m/s^2. Of those that are chosen, or of all.
+    void compute_gradient(Substep& substep, Buffer& u, Buffer* chosen = nullptr);
     // v -= dt G u.
     void push(Substep& substep);
     // v += dt a.
     void predict(Substep& substep);
+    // Into u what finish() left with every particle, or 0 where it feels no pressure now.
+    void load_warm_start(Substep& substep, Buffer& u);
     // x += dt v and collisions; the pressure goes to where hosts read it, u to where the next substep finds it.
     void finish(Substep& substep, Buffer& u);
 
@@ -39,6 +52,9 @@ class Operators {
  private:
     // Nothing here outlives the substep, so it lives in what the next sort will overwrite.
     void borrow(Substep& substep);
+    void store_pressure(Substep& substep, Buffer& u);
+    void sum_neighborhood(Substep& substep, Buffer* chosen);
+    std::uint32_t find_crowded(Substep& substep, float bound, const CrowdingWorkspace& workspace);
 
     Backend& backend_;
     NeighborList list_;

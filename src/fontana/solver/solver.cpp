@@ -9,15 +9,26 @@ Solver::Solver(std::unique_ptr<Backend> backend)
 
 void Solver::begin_frame(const Parameters& parameters) { neighborhood_.fit(particles_, make_constants(parameters)); }
 
-SubstepReport Solver::substep(const Parameters& parameters, const std::vector<Collider>& colliders, double time,
+Substep Solver::begin_substep(const Parameters& parameters, const std::vector<Collider>& colliders, double time,
                               double remaining) {
     StepConstants constants = make_constants(parameters);
     constants.has_force = particles_.has_force() ? 1u : 0u;
     neighborhood_.update(particles_, constants);  // III.4, III.6
-    Substep substep{parameters, colliders,     time,       remaining, *backend_,
-                    particles_, neighborhood_, colliders_, constants, {}};
+    return {parameters, colliders, time, remaining, *backend_, particles_, neighborhood_, colliders_, constants, {}};
+}
+
+SubstepReport Solver::substep(const Parameters& parameters, const std::vector<Collider>& colliders, double time,
+                              double remaining) {
+    Substep substep = begin_substep(parameters, colliders, time, remaining);
     method(parameters.fluid_method).advance(substep);
     return substep.report;
+}
+
+void Solver::end_frame(const Parameters& parameters, const std::vector<Collider>& colliders, double time) {
+    Method& used = method(parameters.fluid_method);
+    if (particles_.count() == 0 || largest_density_error(parameters) == 0.0 || !used.may_be_crowded()) return;
+    Substep substep = begin_substep(parameters, colliders, time, 0.0);
+    used.end_frame(substep);
 }
 
 Method& Solver::method(const std::string& name) {

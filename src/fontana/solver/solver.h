@@ -28,11 +28,16 @@ class Solver {
     // Advances all particles from `time` by at most `remaining` seconds.
     SubstepReport substep(const Parameters& parameters, const std::vector<Collider>& colliders, double time,
                           double remaining);
+    // The last of a frame, at its end.
+    void end_frame(const Parameters& parameters, const std::vector<Collider>& colliders, double time);
     // Others within the support radius, in order of id.
     void count_neighbors(const Parameters& parameters, std::uint32_t* out);
 
  private:
     Method& method(const std::string& name);
+    // Sorts.
+    Substep begin_substep(const Parameters& parameters, const std::vector<Collider>& colliders, double time,
+                          double remaining);
 
     std::unique_ptr<Backend> backend_;
     Particles particles_;

@@ -33,19 +33,6 @@ double convergence_limit(const Parameters& p, double longest, double density_err
     return longest * std::clamp(std::sqrt(quotient(0.01, density_error)), 2.0 / 3.0, 1.0);
 }
 
-// s. The step that keeps the error of the densest particle near its bound. A solve is linear in the step, so that the
-// error a step leaves grows with the step's square. The three numbers are fitted to the dam break of
-// benchmarks/vs_splishsplash.py, whose worst step passes a bound of 1 % by half: the error of the longest step where
-// water first meets a floor; the share of the bound from which on steps shrink, as a few in a row take a particle in a
-// corner to it; and the least, for who is crowded for good.
-double density_error_limit(const Parameters& p, double longest, double density_error) {
-    constexpr double k_first_contact = 0.04, k_begin = 1.0 / 16.0, k_least = 0.2;
-    const double bound = 0.01 * p.solver_density_error_max;
-    if (p.fluid_method != "dfsph" || bound == 0.0) return k_infinity;
-    const double allowed = std::min(bound / k_first_contact, quotient(k_begin * bound, density_error));
-    return longest * std::max(k_least, std::sqrt(allowed));
-}
-
 std::string text_of(double value) {
     char text[32];
     std::snprintf(text, sizeof text, "%.3g", value);
@@ -78,7 +65,6 @@ TimeStep choose_time_step(const Parameters& p, const StepState& state, double re
         {limits.viscosity, "viscosity"},
         {limits.surface_tension, "surface_tension"},
         {convergence_limit(p, limits.convergence, state.density_error), "convergence"},
-        {density_error_limit(p, limits.convergence, state.density_error), "density_error"},
     };
     const auto& smallest = *std::min_element(std::begin(candidates), std::end(candidates));
     // A step that would leave a sliver takes its share of the rest instead.

@@ -31,8 +31,7 @@ struct StepState {
 };
 
 // The next substep when `remaining` seconds of the frame are left: the smallest limit, shortened so that the rest of
-// the frame divides evenly. Two depend on the density error: `convergence` of dfsph with coarse levels falls to 0.1 s/m
-// d where particles crowd, and "density_error" keeps to solver.density_error_max.
+// the frame divides evenly. Where particles crowd, `convergence` of dfsph with coarse levels falls to 0.1 s/m d.
 TimeStep choose_time_step(const Parameters& parameters, const StepState& state, double remaining);
 
 // Throws BAD_INPUT with the limit and a remedy where a fixed step, or the most substeps allowed, cannot integrate the

@@ -134,9 +134,11 @@ void add_neighbors(const StepConstants& c, const Members& members, const Members
 }
 
 void sum_neighborhood(uint begin, uint end, const StepConstants& c, const float4* position, const float4* velocity,
-                      const uint* list_start, const short* list, const ColliderConstants* collider, float* density_out,
-                      float4* factor, float* wall_rate, float* rate, float4* viscous) {
+                      const uint* list_start, const short* list, const ColliderConstants* collider,
+                      const uint& only_chosen, const uint* chosen, float* density_out, float4* factor, float* wall_rate,
+                      float* rate, float4* viscous) {
     for (uint first = begin; first < end; first += k_list_group) {
+        if (!is_any_chosen(only_chosen, chosen, first, end)) continue;
         const Members members(first, end, position), motion(first, end, velocity);
         NeighborhoodSums sums[k_list_group];
         for (NeighborhoodSums& zero : sums) zero = no_neighborhood();
@@ -191,8 +193,10 @@ void pressure_residual(uint begin, uint end, const StepConstants& c, const float
 }
 
 void pressure_gradient(uint begin, uint end, const StepConstants& c, const float* u, const uint* list_start,
-                       const short* list, const float4* position, const float4* factor, float4* gradient) {
+                       const short* list, const float4* position, const float4* factor, const uint& only_chosen,
+                       const uint* chosen, float4* gradient) {
     for (uint first = begin; first < end; first += k_list_group) {
+        if (!is_any_chosen(only_chosen, chosen, first, end)) continue;
         const Members members(first, end, position);
         Real3 sum[k_list_group];
         for (Real3& zero : sum) zero = zero_vector();
@@ -205,6 +209,24 @@ void pressure_gradient(uint begin, uint end, const StepConstants& c, const float
             const float4 g = sums_of(sum[s].x, sum[s].y, sum[s].z, Vec{});
             gradient[first + s] = gradient_of(c, u[first + s], factor[first + s], {g.x, g.y, g.z});
         }
+    }
+}
+
+// A shared list may have a few more than a particle's own: these get a move, or a change, of nothing.
+void mark_crowded(uint begin, uint end, const StepConstants& c, const float* lambda, const uint* list_start,
+                  const short* list, uint* moved) {
+    (void)c;
+    for (uint i = begin; i < end; ++i)
+        if (lambda[i] > 0.0f) for_indices(i, list_start, list, [&](uint j) { STORE_SAME(moved + j, 1u); });
+}
+
+void move_apart(uint begin, uint end, const StepConstants& c, const uint* moved, const float4* gradient,
+                const uint* list_start, const short* list, float4* position, uint* changed) {
+    (void)c;
+    for (uint i = begin; i < end; ++i) {
+        if (moved[i] == 0u) continue;
+        position[i] = moved_down(position[i], gradient[i]);
+        for_indices(i, list_start, list, [&](uint j) { STORE_SAME(changed + j, 1u); });
     }
 }
 
@@ -346,8 +368,8 @@ KernelLoop FONTANA_WIDE_LOOP(const char* kernel) {
 #define WIDE(function) \
     {#function, &Loop<decltype(&::function), decltype(&FONTANA_WIDE::function)>::run<&FONTANA_WIDE::function>},
         WIDE(density) WIDE(fluid_force) WIDE(build_neighbor_list) WIDE(sum_neighborhood) WIDE(density_rate)
-            WIDE(pressure_residual) WIDE(pressure_gradient) WIDE(correct_pressure) WIDE(relax) WIDE(reduce_step)
-                WIDE(anderson_sums) WIDE(coarse_products)
+            WIDE(pressure_residual) WIDE(pressure_gradient) WIDE(mark_crowded) WIDE(move_apart) WIDE(correct_pressure)
+                WIDE(relax) WIDE(reduce_step) WIDE(anderson_sums) WIDE(coarse_products)
 #undef WIDE
     };
     for (const auto& row : table)

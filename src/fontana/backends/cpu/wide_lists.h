@@ -111,4 +111,18 @@ inline __attribute__((always_inline)) void for_list(uint first, const uint* list
     }
 }
 
+// The indices alone, one after the other.
+template <typename Visit>
+inline void for_indices(uint first, const uint* list_start, const short* list, const Visit& visit) {
+    const uint* const mine = reinterpret_cast<const uint*>(list) + list_start[2 * (first / k_list_group)];
+    for (uint k = 0; k < list_length_of(first, list_start); ++k) visit(mine[k]);
+}
+
+// Whether any member of the group that begins at particle `first` is chosen (is_chosen).
+inline bool is_any_chosen(uint only_chosen, const uint* chosen, uint first, uint end) {
+    for (uint i = first; i < end && i < first + k_list_group; ++i)
+        if (is_chosen(only_chosen, chosen, i)) return true;
+    return false;
+}
+
 }  // namespace fontana::FONTANA_WIDE
