@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from fontana import BadInput
-from fontana.validate import Figure, Stage, case_names, elliptical_drop, find_case
-from fontana.validate._dam_break import best_lag
+from fontana.validate import Figure, Stage, case_names, elliptical_drop, find_case, martin_moyce
+from fontana.validate._dam_break import TIME_UNIT, best_lag, peer_front
 from fontana.validate._reference import read_reference
 
 
@@ -70,11 +70,31 @@ def test_the_reference_data_are_whole():
     tip = read_reference("koshizuka_oka_1996_tip.csv")
     assert tip.shape == (15, 2)
     assert np.all(np.diff(tip, axis=0) > 0)
+    hu = read_reference("hu_2010_tip.csv")
+    assert [(hu[:, 0] == run).sum() for run in (1, 2)] == [19, 23]
+    assert read_reference("lobovsky_2014_tip.csv").shape == (137, 2)
+    times, fronts = peer_front()
+    assert (times[-1], fronts[0]) == (2.3, 1.0)
 
 
 def test_the_best_lag_is_found():
     recorded = np.array([1.0, 2.0, 4.0])
     assert best_lag(lambda lag: np.abs(recorded - 0.2 + lag - recorded), 0.4) == pytest.approx(0.2, abs=0.002)
+
+
+def test_a_late_front_cannot_hide_in_the_lag_of_martin_moyce(monkeypatch):
+    """SPlisHSPlasH's own front, and the same 0.3 time units later: the lag stays, the error grows."""
+    times, fronts = peer_front()
+    figures = {}
+    for late in (0.0, 0.3):
+        monkeypatch.setattr(martin_moyce, "front", lambda *_, late=late: (times + late * TIME_UNIT, fronts))
+        outcome = martin_moyce.measure(Stage(), 32)
+        figures[late] = {figure.name: figure.value for figure in outcome.figures}
+    lag = "lag of the experiment's clock, of sqrt(a / 2g), by SPlisHSPlasH"
+    own = "the lag that would fit this result best"
+    assert figures[0.3][lag] == figures[0.0][lag] == figures[0.0][own]
+    assert figures[0.3][own] == 0.0
+    assert figures[0.3]["arrival time, mean error"] > 3 * figures[0.0]["arrival time, mean error"]
 
 
 def test_a_figure_is_kept_by_its_absolute_value():
