@@ -35,7 +35,7 @@ Front = tuple[np.ndarray, np.ndarray]  # s, m
 
 COLUMN, WIDE_COLUMN = (1.0, 2.0), (2.0, 1.0)  # width and height, m
 SECONDS, WIDE_SECONDS, FRAME_RATE = 2.3, 0.85, 500.0
-# Over sqrt(2 H / g), the slowest that counts as sudden; Koshizuka and Oka's, if 0.05 s long as is told, has 0.2.
+# Over sqrt(2 H / g), the slowest that counts as sudden (Lauber and Hager 1998).
 GATES = (0.2, 0.4, 0.6, 1.0)
 GATE_RADIUS = 200.0  # m: of the cylinder that stands for a flat gate; 0.1 mm of sagitta across the slice
 CAPILLARY_LENGTH = 0.0027  # m, of water
