@@ -44,6 +44,16 @@ KERNEL void mark_crowded(THREAD_ARG const StepConstants c, GLOBAL const float* R
     if (i < c.particle_count && lambda[i] > 0.0f) mark_with_neighbors(c, i, list_start, list, moved);
 }
 
+// G lambda of those who are to be moved.
+KERNEL void crowding_gradient(THREAD_ARG const StepConstants c, GLOBAL const uint* RESTRICT moved,
+                              GLOBAL const float* RESTRICT lambda, GLOBAL const uint* RESTRICT list_start,
+                              GLOBAL const short* RESTRICT list, GLOBAL const float4* RESTRICT position,
+                              GLOBAL const float4* RESTRICT factor, GLOBAL float4* RESTRICT gradient) {
+    const uint i = THREAD_INDEX;
+    if (i < c.particle_count && moved[i] != 0u)
+        gradient[i] = gradient_at(c, i, lambda, list_start, list, position, factor);
+}
+
 FN float4 moved_down(float4 x, float4 g) { return MAKE_FLOAT4(x.x - g.x, x.y - g.y, x.z - g.z, x.w); }
 
 // x -= G lambda, with G lambda in `gradient`; marks whose sums that changes.
@@ -54,6 +64,19 @@ KERNEL void move_apart(THREAD_ARG const StepConstants c, GLOBAL const uint* REST
     if (i >= c.particle_count || moved[i] == 0u) return;
     position[i] = moved_down(position[i], gradient[i]);
     mark_with_neighbors(c, i, list_start, list, changed);
+}
+
+// sum_neighborhood for those whom that has changed.
+KERNEL void sum_changed(THREAD_ARG const StepConstants c, GLOBAL const uint* RESTRICT changed,
+                        GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT velocity,
+                        GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list,
+                        GLOBAL const ColliderConstants* RESTRICT collider, GLOBAL float* RESTRICT density_out,
+                        GLOBAL float4* RESTRICT factor, GLOBAL float* RESTRICT wall_rate, GLOBAL float* RESTRICT rate,
+                        GLOBAL float4* RESTRICT viscous) {
+    const uint i = THREAD_INDEX;
+    if (i < c.particle_count && changed[i] != 0u)
+        sum_neighborhood_of(c, i, position, velocity, list_start, list, collider, density_out, factor, wall_rate, rate,
+                            viscous);
 }
 
 #endif

@@ -36,23 +36,15 @@ FN float4 viscosity_of(const StepConstants c, Real3 shear) {
     return MAKE_FLOAT4(scale * shear.x, scale * shear.y, scale * shear.z, 0.0f);
 }
 
-// For kernels that may leave out particles: whether to look at `chosen`, and then who is in, 1, or out, 0.
-FN bool is_chosen(uint only_chosen, GLOBAL const uint* RESTRICT chosen, uint i) {
-    return only_chosen == 0u || chosen[i] != 0u;
-}
-
 // All that a substep has to know before pressure acts, in one visit to every neighbour. `position`: x, y, z, m. Out:
 // the density; `factor` = S, 1 / D (0 where a particle feels no pressure); `wall_rate`; `rate`, that of the relative
 // density under the present velocities (1/s); and the acceleration by viscosity.
-KERNEL void sum_neighborhood(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
-                             GLOBAL const float4* RESTRICT velocity, GLOBAL const uint* RESTRICT list_start,
-                             GLOBAL const short* RESTRICT list, GLOBAL const ColliderConstants* RESTRICT collider,
-                             const uint only_chosen, GLOBAL const uint* RESTRICT chosen,
-                             GLOBAL float* RESTRICT density_out, GLOBAL float4* RESTRICT factor,
-                             GLOBAL float* RESTRICT wall_rate, GLOBAL float* RESTRICT rate,
-                             GLOBAL float4* RESTRICT viscous) {
-    const uint i = THREAD_INDEX;
-    if (i >= c.particle_count || !is_chosen(only_chosen, chosen, i)) return;
+FN void sum_neighborhood_of(const StepConstants c, uint i, GLOBAL const float4* RESTRICT position,
+                            GLOBAL const float4* RESTRICT velocity, GLOBAL const uint* RESTRICT list_start,
+                            GLOBAL const short* RESTRICT list, GLOBAL const ColliderConstants* RESTRICT collider,
+                            GLOBAL float* RESTRICT density_out, GLOBAL float4* RESTRICT factor,
+                            GLOBAL float* RESTRICT wall_rate, GLOBAL float* RESTRICT rate,
+                            GLOBAL float4* RESTRICT viscous) {
     const float4 x_i = position[i], v_i = velocity[i];
     NeighborhoodSums sums = no_neighborhood();
     sums.density = x_i.w * kernel_value(c, 0.0f);
@@ -68,6 +60,18 @@ KERNEL void sum_neighborhood(THREAD_ARG const StepConstants c, GLOBAL const floa
     wall_rate[i] = walls.rate;
     rate[i] = divergence_of(c, s, v_i, sums.flow) - walls.rate;
     viscous[i] = viscosity_of(c, sums.shear);
+}
+
+KERNEL void sum_neighborhood(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT position,
+                             GLOBAL const float4* RESTRICT velocity, GLOBAL const uint* RESTRICT list_start,
+                             GLOBAL const short* RESTRICT list, GLOBAL const ColliderConstants* RESTRICT collider,
+                             GLOBAL float* RESTRICT density_out, GLOBAL float4* RESTRICT factor,
+                             GLOBAL float* RESTRICT wall_rate, GLOBAL float* RESTRICT rate,
+                             GLOBAL float4* RESTRICT viscous) {
+    const uint i = THREAD_INDEX;
+    if (i < c.particle_count)
+        sum_neighborhood_of(c, i, position, velocity, list_start, list, collider, density_out, factor, wall_rate, rate,
+                            viscous);
 }
 
 // G^T applied to `field`, without the walls' own motion.
@@ -100,14 +104,9 @@ FN float4 gradient_of(const StepConstants c, float u_i, float4 s, Real3 sum) {
     return MAKE_FLOAT4(u_i * s.x + scale * sum.x, u_i * s.y + scale * sum.y, u_i * s.z + scale * sum.z, 0.0f);
 }
 
-// G u, into `gradient`.
-KERNEL void pressure_gradient(THREAD_ARG const StepConstants c, GLOBAL const float* RESTRICT u,
-                              GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list,
-                              GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT factor,
-                              const uint only_chosen, GLOBAL const uint* RESTRICT chosen,
-                              GLOBAL float4* RESTRICT gradient) {
-    const uint i = THREAD_INDEX;
-    if (i >= c.particle_count || !is_chosen(only_chosen, chosen, i)) return;
+FN float4 gradient_at(const StepConstants c, uint i, GLOBAL const float* RESTRICT u,
+                      GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list,
+                      GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT factor) {
     const float4 x_i = position[i];
     Real3 sum = zero_vector();
     for (Walk walk = first_neighbor(c, i, list_start, list); walk.is_there; walk = next_neighbor(c, walk, list)) {
@@ -115,7 +114,16 @@ KERNEL void pressure_gradient(THREAD_ARG const StepConstants c, GLOBAL const flo
         const float4 x_j = position[j];
         sum = add_gradient(sum, c, x_j.w * u[j], quick_pair_of(x_i, x_j));
     }
-    gradient[i] = gradient_of(c, u[i], factor[i], sum);
+    return gradient_of(c, u[i], factor[i], sum);
+}
+
+// G u, into `gradient`.
+KERNEL void pressure_gradient(THREAD_ARG const StepConstants c, GLOBAL const float* RESTRICT u,
+                              GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list,
+                              GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT factor,
+                              GLOBAL float4* RESTRICT gradient) {
+    const uint i = THREAD_INDEX;
+    if (i < c.particle_count) gradient[i] = gradient_at(c, i, u, list_start, list, position, factor);
 }
 
 // v -= dt G u, with G u in `gradient`.

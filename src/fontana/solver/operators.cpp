@@ -15,14 +15,9 @@ void Operators::begin(Substep& s) {
     borrow(s);
     list_.build(s.particles, s.neighborhood, s.constants);
     s.place_walls();
-    sum_neighborhood(s, nullptr);
-}
-
-void Operators::sum_neighborhood(Substep& s, Buffer* chosen) {
     backend_.launch(Kernel::sum_neighborhood, s.particles.count(),
                     {s.constants, s.particles.position(), s.particles.velocity(), list_.start(), list_.list(),
-                     s.colliders.buffer(), std::uint32_t{chosen != nullptr}, chosen ? *chosen : list_.start(),
-                     s.particles.density(), *factor_, *wall_rate_, *rate_, *gradient_});
+                     s.colliders.buffer(), s.particles.density(), *factor_, *wall_rate_, *rate_, *gradient_});
 }
 
 void Operators::move_apart(Substep& s, const CrowdingWorkspace& workspace) {
@@ -39,11 +34,16 @@ void Operators::move_apart(Substep& s, const CrowdingWorkspace& workspace) {
         turns += found;
         backend_.launch(Kernel::mark_crowded, count,
                         {s.constants, workspace.lambda, list_.start(), list_.list(), workspace.moved});
-        compute_gradient(s, workspace.lambda, &workspace.moved);
+        backend_.launch(Kernel::crowding_gradient, count,
+                        {s.constants, workspace.moved, workspace.lambda, list_.start(), list_.list(),
+                         s.particles.position(), *factor_, *gradient_});
         backend_.launch(Kernel::move_apart, count,
                         {s.constants, workspace.moved, *gradient_, list_.start(), list_.list(), s.particles.position(),
                          workspace.changed});
-        sum_neighborhood(s, &workspace.changed);
+        backend_.launch(
+            Kernel::sum_changed, count,
+            {s.constants, workspace.changed, s.particles.position(), s.particles.velocity(), list_.start(),
+             list_.list(), s.colliders.buffer(), s.particles.density(), *factor_, *wall_rate_, *rate_, *gradient_});
     }
 }
 
@@ -63,10 +63,9 @@ void Operators::compute_rate(Substep& s) {
                      *wall_rate_, *rate_});
 }
 
-void Operators::compute_gradient(Substep& s, Buffer& u, Buffer* chosen) {
+void Operators::compute_gradient(Substep& s, Buffer& u) {
     backend_.launch(Kernel::pressure_gradient, s.particles.count(),
-                    {s.constants, u, list_.start(), list_.list(), s.particles.position(), *factor_,
-                     std::uint32_t{chosen != nullptr}, chosen ? *chosen : list_.start(), *gradient_});
+                    {s.constants, u, list_.start(), list_.list(), s.particles.position(), *factor_, *gradient_});
 }
 
 void Operators::push(Substep& s) {

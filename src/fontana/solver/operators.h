@@ -33,8 +33,8 @@ class Operators {
     // At the end of a frame, after these two alone, what hosts read: acceleration, and pressure from the u that
     // finish() left. `u` is written to.
     void refresh(Substep& substep, Buffer& u);
-    // G u into gradient(); m/s^2. Of those that are chosen, or of all.
-    void compute_gradient(Substep& substep, Buffer& u, Buffer* chosen = nullptr);
+    // G u into gradient(); m/s^2.
+    void compute_gradient(Substep& substep, Buffer& u);
     // v -= dt G u.
     void push(Substep& substep);
     // v += dt a.
@@ -53,7 +53,6 @@ class Operators {
     // Nothing here outlives the substep, so it lives in what the next sort will overwrite.
     void borrow(Substep& substep);
     void store_pressure(Substep& substep, Buffer& u);
-    void sum_neighborhood(Substep& substep, Buffer* chosen);
     std::uint32_t find_crowded(Substep& substep, float bound, const CrowdingWorkspace& workspace);
 
     Backend& backend_;

@@ -134,11 +134,9 @@ void add_neighbors(const StepConstants& c, const Members& members, const Members
 }
 
 void sum_neighborhood(uint begin, uint end, const StepConstants& c, const float4* position, const float4* velocity,
-                      const uint* list_start, const short* list, const ColliderConstants* collider,
-                      const uint& only_chosen, const uint* chosen, float* density_out, float4* factor, float* wall_rate,
-                      float* rate, float4* viscous) {
+                      const uint* list_start, const short* list, const ColliderConstants* collider, float* density_out,
+                      float4* factor, float* wall_rate, float* rate, float4* viscous) {
     for (uint first = begin; first < end; first += k_list_group) {
-        if (!is_any_chosen(only_chosen, chosen, first, end)) continue;
         const Members members(first, end, position), motion(first, end, velocity);
         NeighborhoodSums sums[k_list_group];
         for (NeighborhoodSums& zero : sums) zero = no_neighborhood();
@@ -156,6 +154,15 @@ void sum_neighborhood(uint begin, uint end, const StepConstants& c, const float4
             viscous[i] = viscosity_of(c, {shear.x, shear.y, shear.z});
         }
     }
+}
+
+void sum_changed(uint begin, uint end, const StepConstants& c, const uint* changed, const float4* position,
+                 const float4* velocity, const uint* list_start, const short* list, const ColliderConstants* collider,
+                 float* density_out, float4* factor, float* wall_rate, float* rate, float4* viscous) {
+    for_marked_groups(changed, begin, end, [&](uint first, uint last) {
+        sum_neighborhood(first, last, c, position, velocity, list_start, list, collider, density_out, factor, wall_rate,
+                         rate, viscous);
+    });
 }
 
 // G^T applied to `field` at every member, without the walls' own motion: store(i, the result).
@@ -193,10 +200,8 @@ void pressure_residual(uint begin, uint end, const StepConstants& c, const float
 }
 
 void pressure_gradient(uint begin, uint end, const StepConstants& c, const float* u, const uint* list_start,
-                       const short* list, const float4* position, const float4* factor, const uint& only_chosen,
-                       const uint* chosen, float4* gradient) {
+                       const short* list, const float4* position, const float4* factor, float4* gradient) {
     for (uint first = begin; first < end; first += k_list_group) {
-        if (!is_any_chosen(only_chosen, chosen, first, end)) continue;
         const Members members(first, end, position);
         Real3 sum[k_list_group];
         for (Real3& zero : sum) zero = zero_vector();
@@ -210,6 +215,14 @@ void pressure_gradient(uint begin, uint end, const StepConstants& c, const float
             gradient[first + s] = gradient_of(c, u[first + s], factor[first + s], {g.x, g.y, g.z});
         }
     }
+}
+
+void crowding_gradient(uint begin, uint end, const StepConstants& c, const uint* moved, const float* lambda,
+                       const uint* list_start, const short* list, const float4* position, const float4* factor,
+                       float4* gradient) {
+    for_marked_groups(moved, begin, end, [&](uint first, uint last) {
+        pressure_gradient(first, last, c, lambda, list_start, list, position, factor, gradient);
+    });
 }
 
 // A shared list may have a few more than a particle's own: these get a move, or a change, of nothing.
@@ -368,8 +381,9 @@ KernelLoop FONTANA_WIDE_LOOP(const char* kernel) {
 #define WIDE(function) \
     {#function, &Loop<decltype(&::function), decltype(&FONTANA_WIDE::function)>::run<&FONTANA_WIDE::function>},
         WIDE(density) WIDE(fluid_force) WIDE(build_neighbor_list) WIDE(sum_neighborhood) WIDE(density_rate)
-            WIDE(pressure_residual) WIDE(pressure_gradient) WIDE(mark_crowded) WIDE(move_apart) WIDE(correct_pressure)
-                WIDE(relax) WIDE(reduce_step) WIDE(anderson_sums) WIDE(coarse_products)
+            WIDE(pressure_residual) WIDE(pressure_gradient) WIDE(mark_crowded) WIDE(crowding_gradient) WIDE(move_apart)
+                WIDE(sum_changed) WIDE(correct_pressure) WIDE(relax) WIDE(reduce_step) WIDE(anderson_sums)
+                    WIDE(coarse_products)
 #undef WIDE
     };
     for (const auto& row : table)

@@ -118,11 +118,15 @@ inline void for_indices(uint first, const uint* list_start, const short* list, c
     for (uint k = 0; k < list_length_of(first, list_start); ++k) visit(mine[k]);
 }
 
-// Whether any member of the group that begins at particle `first` is chosen (is_chosen).
-inline bool is_any_chosen(uint only_chosen, const uint* chosen, uint first, uint end) {
-    for (uint i = first; i < end && i < first + k_list_group; ++i)
-        if (is_chosen(only_chosen, chosen, i)) return true;
-    return false;
+// Calls visit(its first particle, the one behind its last) for every group of which a member is marked.
+template <typename Visit>
+inline void for_marked_groups(const uint* mark, uint begin, uint end, const Visit& visit) {
+    for (uint first = begin; first < end; first += k_list_group) {
+        const uint last = end - first < k_list_group ? end : first + k_list_group;
+        bool is_marked = false;
+        for (uint i = first; i < last; ++i) is_marked = is_marked || mark[i] != 0u;
+        if (is_marked) visit(first, last);
+    }
 }
 
 }  // namespace fontana::FONTANA_WIDE
