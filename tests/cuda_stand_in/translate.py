@@ -352,7 +352,7 @@ def compiled(ptx: str, folder: Path) -> Path:
     if library.exists():
         return library
     folder.mkdir(parents=True, exist_ok=True)
-    draft = folder / f"{key}.{os.getpid()}"
+    draft = folder / f"{key}-{os.getpid()}"  # a point would make it a suffix, which is replaced
     draft.with_suffix(".cpp").write_text(source)
     command = [compiler, *FLAGS, "-I", HERE, draft.with_suffix(".cpp"), "-o", draft.with_suffix(".draft")]
     subprocess.run(command, check=True, stdout=sys.stderr)

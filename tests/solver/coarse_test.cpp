@@ -86,17 +86,16 @@ struct Fluid {
             weight[i] = factor[i].w > 0.0f && i % 11u != 0u && position[i].x < 0.2f ? position[i].w : 0.0f;
     }
 
-    // K u with the kernels of the solve; target 0, so that the residual is its negative.
+    // K u with the kernels of the solve, as if G u were the velocity; no excess.
     std::vector<float> apply(const std::vector<float>& u) {
-        const std::vector<float> target(u.size(), 0.0f);
+        const std::vector<float> excess(u.size(), 0.0f);
         std::vector<float> result(u.size());
         for (uint i = 0; i < c.particle_count; ++i)
             pressure_gradient(i, c, u.data(), list_start.data(), list.data(), position.data(), factor.data(),
                               gradient.data());
         for (uint i = 0; i < c.particle_count; ++i)
             pressure_residual(i, c, gradient.data(), list_start.data(), list.data(), position.data(), factor.data(),
-                              target.data(), result.data());
-        for (float& r : result) r = -r;
+                              excess.data(), result.data());
         return result;
     }
 

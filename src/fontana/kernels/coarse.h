@@ -64,11 +64,11 @@ FN void add_coarse_entry(GLOBAL float* RESTRICT row, uint slot, float value) {
 
 // The mass where the particle takes part, else 0.
 KERNEL void coarse_weights(THREAD_ARG const uint count, GLOBAL const float4* RESTRICT position,
-                           GLOBAL const float4* RESTRICT factor, GLOBAL const float* RESTRICT target,
+                           GLOBAL const float4* RESTRICT factor, GLOBAL const float* RESTRICT residual,
                            GLOBAL const float* RESTRICT u, GLOBAL float* RESTRICT weight) {
     const uint i = THREAD_INDEX;
     if (i >= count) return;
-    weight[i] = factor[i].w > 0.0f && (u[i] > 0.0f || target[i] > 0.0f) ? position[i].w : 0.0f;
+    weight[i] = factor[i].w > 0.0f && (u[i] > 0.0f || residual[i] > 0.0f) ? position[i].w : 0.0f;
 }
 
 // The columns of G P at one particle (coarse_pair.h).

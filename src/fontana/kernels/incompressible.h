@@ -88,16 +88,6 @@ FN float divergence_at(const StepConstants c, uint i, GLOBAL const uint* RESTRIC
     return divergence_of(c, factor[i], field[i], sum);
 }
 
-// Rate of the relative density under the velocities, 1/s: what the solves start from.
-KERNEL void density_rate(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT velocity,
-                         GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list,
-                         GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT factor,
-                         GLOBAL const float* RESTRICT wall_rate, GLOBAL float* RESTRICT rate) {
-    const uint i = THREAD_INDEX;
-    if (i >= c.particle_count) return;
-    rate[i] = divergence_at(c, i, list_start, list, position, factor, velocity) - wall_rate[i];
-}
-
 // G u from its sum over neighbours; s: S_i.
 FN float4 gradient_of(const StepConstants c, float u_i, float4 s, Real3 sum) {
     const float scale = c.gradient_scale;
@@ -124,6 +114,20 @@ KERNEL void pressure_gradient(THREAD_ARG const StepConstants c, GLOBAL const flo
                               GLOBAL float4* RESTRICT gradient) {
     const uint i = THREAD_INDEX;
     if (i < c.particle_count) gradient[i] = gradient_at(c, i, u, list_start, list, position, factor);
+}
+
+// v / dt - G u, m/s^2: over dt, the velocity that pressure leaves.
+FN float4 pressed(const StepConstants c, float4 v, float4 g) {
+    return MAKE_FLOAT4(c.inverse_dt * v.x - g.x, c.inverse_dt * v.y - g.y, c.inverse_dt * v.z - g.z, 0.0f);
+}
+
+KERNEL void pressed_velocity(THREAD_ARG const StepConstants c, GLOBAL const float* RESTRICT u,
+                             GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list,
+                             GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT factor,
+                             GLOBAL const float4* RESTRICT velocity, GLOBAL float4* RESTRICT out) {
+    const uint i = THREAD_INDEX;
+    if (i < c.particle_count)
+        out[i] = pressed(c, velocity[i], gradient_at(c, i, u, list_start, list, position, factor));
 }
 
 // v -= dt G u, with G u in `gradient`.

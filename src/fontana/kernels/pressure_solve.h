@@ -1,5 +1,6 @@
 // The pressure solve of DFSPH as a complementarity problem: find u >= 0 such that r = target - K u is <= 0 where u = 0
-// and 0 where u > 0 (K = G^T G, incompressible.h). Projected Anderson acceleration of depth 2 over relaxed Jacobi, and
+// and 0 where u > 0 (K = G^T G, incompressible.h; target: the relative density above rest that the step would end with
+// without pressure, over dt^2). Projected Anderson acceleration of depth 2 over relaxed Jacobi, and
 // a residual that counts both sides: too much pressure as well as too little, which is what makes the full warm start
 // safe. With no history it is plain relaxed Jacobi, the reference.
 #ifndef FONTANA_PRESSURE_SOLVE_H
@@ -18,13 +19,13 @@
 #define SOLVE_ITERATIONS 5u
 #define SOLVE_STATE_SIZE 6u
 
-// In place, from the rate of the relative density to the target of the solve, (relative - 1 + dt rate) / dt^2.
-KERNEL void density_target(THREAD_ARG const StepConstants c, GLOBAL const float* RESTRICT density_in,
-                           GLOBAL float* RESTRICT target) {
+// The relative density above rest that the step would end with if only the walls moved, over dt^2.
+KERNEL void density_excess(THREAD_ARG const StepConstants c, GLOBAL const float* RESTRICT density_in,
+                           GLOBAL const float* RESTRICT wall_rate, GLOBAL float* RESTRICT excess) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
-    const float excess = density_in[i] * c.inverse_rest_density - 1.0f;
-    target[i] = (excess * c.inverse_dt + target[i]) * c.inverse_dt;
+    const float now = density_in[i] * c.inverse_rest_density - 1.0f;
+    excess[i] = (now * c.inverse_dt - wall_rate[i]) * c.inverse_dt;
 }
 
 // One relaxed step from zero against growing density: at the tolerances in use, all that the divergence solve needs.
@@ -38,15 +39,15 @@ KERNEL void divergence_step(THREAD_ARG const StepConstants c, const float relaxa
     u[i] = relative > 0.63f ? relaxation * max_f(rate[i], 0.0f) * c.inverse_dt * factor[i].w : 0.0f;
 }
 
-// r = target - K u from G u, 1/s^2; 0 where no pressure acts.
-KERNEL void pressure_residual(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT gradient,
+// r = target - K u, 1/s^2, as the excess that pressed_velocity leads to; 0 where no pressure acts.
+KERNEL void pressure_residual(THREAD_ARG const StepConstants c, GLOBAL const float4* RESTRICT pressed_velocity,
                               GLOBAL const uint* RESTRICT list_start, GLOBAL const short* RESTRICT list,
                               GLOBAL const float4* RESTRICT position, GLOBAL const float4* RESTRICT factor,
-                              GLOBAL const float* RESTRICT target, GLOBAL float* RESTRICT residual) {
+                              GLOBAL const float* RESTRICT excess, GLOBAL float* RESTRICT residual) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count) return;
-    const float k_u = divergence_at(c, i, list_start, list, position, factor, gradient);
-    residual[i] = factor[i].w > 0.0f ? target[i] - k_u : 0.0f;
+    const float rate = divergence_at(c, i, list_start, list, position, factor, pressed_velocity);
+    residual[i] = factor[i].w > 0.0f ? excess[i] + rate : 0.0f;
 }
 
 KERNEL void relax(THREAD_ARG const StepConstants c, const float relaxation, const uint with_coarse,

@@ -46,11 +46,11 @@ void CoarseCorrection::reserve(Substep& s) {
     levels_ = std::move(levels);
 }
 
-void CoarseCorrection::prepare(Substep& s, Operators& operators, Buffer& u, Buffer& products) {
+void CoarseCorrection::prepare(Substep& s, Operators& operators, Buffer& residual, Buffer& u, Buffer& products) {
     const auto count = static_cast<std::uint32_t>(s.particles.count());
     const auto cell_count = static_cast<std::uint32_t>(s.neighborhood.shape().cell_count());
     backend_.launch(Kernel::coarse_weights, count,
-                    {count, s.particles.position(), operators.factor(), operators.rate(), u, *weight_});
+                    {count, s.particles.position(), operators.factor(), residual, u, *weight_});
     backend_.launch(Kernel::coarse_products, cell_count,
                     {s.constants, cell_count, s.neighborhood.cell_start(), s.particles.position(), operators.factor(),
                      *weight_, operators.list().start(), operators.list().list(), products});

@@ -16,9 +16,9 @@ class CoarseCorrection {
 
     // Memory for all levels of the substep's grid.
     void reserve(Substep& substep);
-    // Builds the matrices of all levels for the particles that have pressure `u` or are called on for some; rate() of
-    // the operators is the target of the solve. `products` is written to, and done with on return.
-    void prepare(Substep& substep, Operators& operators, Buffer& u, Buffer& products);
+    // Builds the matrices of all levels for the particles that have pressure `u` or are called on for some by its
+    // residual. `products` is written to, and done with on return.
+    void prepare(Substep& substep, Operators& operators, Buffer& residual, Buffer& u, Buffer& products);
     // One V-cycle for the residual; correction() then has the result on the finest level.
     void solve(Substep& substep, Buffer& residual, Buffer& u);
 

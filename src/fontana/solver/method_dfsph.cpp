@@ -103,19 +103,22 @@ class Dfsph : public Method {
 
     void solve_density(Substep& s) {
         const std::size_t count = s.particles.count();
-        operators_.compute_rate(s);
-        backend_.launch(Kernel::density_target, count, {s.constants, s.particles.density(), operators_.rate()});
+        excess_ = &operators_.rate();  // which was for the divergence
+        backend_.launch(Kernel::density_excess, count,
+                        {s.constants, s.particles.density(), operators_.wall_rate(), *excess_});
         operators_.load_warm_start(s, u(1));
+        compute_residual(s, 1);
         const auto most = static_cast<std::uint32_t>(s.parameters.solver_max_iterations);
         with_coarse_ = may_be_coarse(s) && long_waves_matter(s);
         const bool may_give_up = may_be_coarse(s) && !with_coarse_;
-        if (with_coarse_) coarse_.prepare(s, operators_, u(1), *workspace_);
+        if (with_coarse_) coarse_.prepare(s, operators_, *residual_, u(1), *workspace_);
         SolveState state = iterate_until_done(s, most, may_give_up);
         s.report.iterations = static_cast<std::uint32_t>(state.iterations);
         if (may_give_up && state.done == 0.0f && s.report.iterations < most) {
             if (pressure_ != &u(1)) backend_.copy(*pressure_, u(1), count * 4);
             with_coarse_ = true;
-            coarse_.prepare(s, operators_, u(1), *workspace_);
+            compute_residual(s, 1);
+            coarse_.prepare(s, operators_, *residual_, u(1), *workspace_);
             state = iterate_until_done(s, most - s.report.iterations, false);
             s.report.iterations += static_cast<std::uint32_t>(state.iterations);
         }
@@ -127,14 +130,16 @@ class Dfsph : public Method {
         return s.parameters.solver_pressure_solver == "multilevel" && s.constants.use_grid;
     }
 
-    // From u(1) to pressure_. The matrices of the coarse levels cost as much as two iterations, and most solves in a
-    // splash are done soon; so those that may give up do where eight more would not suffice at the pace they have.
+    // From u(1) and its residual to pressure_. The matrices of the coarse levels cost as much as two iterations, and
+    // most solves in a splash are done soon; so those that may give up do where eight more would not suffice at the
+    // pace they have.
     SolveState iterate_until_done(Substep& s, std::uint32_t most, bool may_give_up) {
         // A GPU would rather run an iteration too many, which changes nothing, than wait for an answer after each.
         const std::uint32_t poll = backend_.device().is_gpu ? 2 : 1;
         SolveState state{};
         float first_residual = std::numeric_limits<float>::infinity(), residual_before = first_residual;
         for (std::uint32_t k = 1; k <= most; ++k) {
+            if (k > 1) compute_residual(s, k);
             iterate(s, k);
             pressure_ = &u(k + 1);
             if (k % poll != 0 && k != most) continue;
@@ -153,6 +158,14 @@ class Dfsph : public Method {
         return state;
     }
 
+    // Of u(k).
+    void compute_residual(Substep& s, std::uint32_t k) {
+        operators_.compute_pressed_velocity(s, u(k));
+        backend_.launch(Kernel::pressure_residual, s.particles.count(),
+                        {s.constants, operators_.gradient(), operators_.list().start(), operators_.list().list(),
+                         s.particles.position(), operators_.factor(), *excess_, *residual_});
+    }
+
     void iterate(Substep& s, std::uint32_t k) {
         const std::size_t count = s.particles.count();
         const auto n = static_cast<std::uint32_t>(count);
@@ -164,10 +177,6 @@ class Dfsph : public Method {
                                                : k_jacobi_relaxation;
         const auto tolerance = static_cast<float>(allowed_residual(s));
 
-        operators_.compute_gradient(s, u(k));
-        backend_.launch(Kernel::pressure_residual, count,
-                        {s.constants, operators_.gradient(), operators_.list().start(), operators_.list().list(),
-                         s.particles.position(), operators_.factor(), operators_.rate(), *residual_});
         if (with_coarse_) coarse_.solve(s, *residual_, u(k));
         backend_.launch(Kernel::relax, count,
                         {s.constants, relaxation, std::uint32_t{with_coarse_},
@@ -220,8 +229,8 @@ class Dfsph : public Method {
     CoarseCorrection coarse_;
     std::unique_ptr<Buffer> workspace_, u_[k_depth + 1], step_[k_depth + 1];
     bool with_coarse_ = false, may_be_crowded_ = true;
-    Buffer* pressure_ = nullptr;  // the result of the solve, one of u_
-    Buffer* residual_ = nullptr;  // lent by the particles
+    Buffer* pressure_ = nullptr;                      // the result of the solve, one of u_
+    Buffer *residual_ = nullptr, *excess_ = nullptr;  // lent by the particles and the operators
     std::unique_ptr<Buffer> sums_, folded_sums_, state_;
 };
 

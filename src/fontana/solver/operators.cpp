@@ -57,15 +57,15 @@ std::uint32_t Operators::find_crowded(Substep& s, float bound, const CrowdingWor
     return found;
 }
 
-void Operators::compute_rate(Substep& s) {
-    backend_.launch(Kernel::density_rate, s.particles.count(),
-                    {s.constants, s.particles.velocity(), list_.start(), list_.list(), s.particles.position(), *factor_,
-                     *wall_rate_, *rate_});
-}
-
 void Operators::compute_gradient(Substep& s, Buffer& u) {
     backend_.launch(Kernel::pressure_gradient, s.particles.count(),
                     {s.constants, u, list_.start(), list_.list(), s.particles.position(), *factor_, *gradient_});
+}
+
+void Operators::compute_pressed_velocity(Substep& s, Buffer& u) {
+    backend_.launch(Kernel::pressed_velocity, s.particles.count(),
+                    {s.constants, u, list_.start(), list_.list(), s.particles.position(), *factor_,
+                     s.particles.velocity(), *gradient_});
 }
 
 void Operators::push(Substep& s) {

@@ -28,13 +28,13 @@ class Operators {
     // The acceleration by viscosity, surface tension and external forces; after choose_time_step, which looks at the
     // last one, and before gradient() is used, where viscosity waits.
     void add_forces(Substep& substep);
-    // Rate of the relative density under the present velocities into rate(); 1/s.
-    void compute_rate(Substep& substep);
     // At the end of a frame, after these two alone, what hosts read: acceleration, and pressure from the u that
     // finish() left. `u` is written to.
     void refresh(Substep& substep, Buffer& u);
     // G u into gradient(); m/s^2.
     void compute_gradient(Substep& substep, Buffer& u);
+    // v / dt - G u into gradient(); m/s^2.
+    void compute_pressed_velocity(Substep& substep, Buffer& u);
     // v -= dt G u.
     void push(Substep& substep);
     // v += dt a.
@@ -47,6 +47,7 @@ class Operators {
     NeighborList& list() { return list_; }
     Buffer& factor() { return *factor_; }
     Buffer& rate() { return *rate_; }
+    Buffer& wall_rate() { return *wall_rate_; }
     Buffer& gradient() { return *gradient_; }
 
  private:

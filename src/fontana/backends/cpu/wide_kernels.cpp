@@ -165,42 +165,32 @@ void sum_changed(uint begin, uint end, const StepConstants& c, const uint* chang
     });
 }
 
-// G^T applied to `field` at every member, without the walls' own motion: store(i, the result).
-template <typename Store>
-inline __attribute__((always_inline)) void for_divergence(uint begin, uint end, const StepConstants& c,
-                                                          const uint* list_start, const short* list,
-                                                          const float4* position, const float4* factor,
-                                                          const float4* field, const Store& store) {
+void pressure_residual(uint begin, uint end, const StepConstants& c, const float4* pressed_velocity,
+                       const uint* list_start, const short* list, const float4* position, const float4* factor,
+                       const float* excess, float* residual) {
     for (uint first = begin; first < end; first += k_list_group) {
         const Members members(first, end, position);
         Vec sum[k_list_group] = {};
         for_list(first, list_start, list, position, [&](const uint* j, const Vec4& x_j) {
-            const Vec4 a_j = gather(field, j);
+            const Vec4 v_j = gather(pressed_velocity, j);
             for (uint s = 0; s < k_list_group; ++s)
-                sum[s] += divergence_term(c, x_j.w, quick_pair_of(members.x[s], x_j), a_j);
+                sum[s] += divergence_term(c, x_j.w, quick_pair_of(members.x[s], x_j), v_j);
         });
         const float4 sums = sums_of(sum[0], sum[1], sum[2], sum[3]);
-        for (uint s = 0; s < members.count; ++s)
-            store(first + s, divergence_of(c, factor[first + s], field[first + s], (&sums.x)[s]));
+        for (uint s = 0; s < members.count; ++s) {
+            const uint i = first + s;
+            const float rate = divergence_of(c, factor[i], pressed_velocity[i], (&sums.x)[s]);
+            residual[i] = factor[i].w > 0.0f ? excess[i] + rate : 0.0f;
+        }
     }
 }
 
-void density_rate(uint begin, uint end, const StepConstants& c, const float4* velocity, const uint* list_start,
-                  const short* list, const float4* position, const float4* factor, const float* wall_rate,
-                  float* rate) {
-    for_divergence(begin, end, c, list_start, list, position, factor, velocity,
-                   [&](uint i, float divergence) { rate[i] = divergence - wall_rate[i]; });
-}
-
-void pressure_residual(uint begin, uint end, const StepConstants& c, const float4* gradient, const uint* list_start,
-                       const short* list, const float4* position, const float4* factor, const float* target,
-                       float* residual) {
-    for_divergence(begin, end, c, list_start, list, position, factor, gradient,
-                   [&](uint i, float k_u) { residual[i] = factor[i].w > 0.0f ? target[i] - k_u : 0.0f; });
-}
-
-void pressure_gradient(uint begin, uint end, const StepConstants& c, const float* u, const uint* list_start,
-                       const short* list, const float4* position, const float4* factor, float4* gradient) {
+// G u at every particle: store(i, the result).
+template <typename Store>
+inline __attribute__((always_inline)) void for_gradient(uint begin, uint end, const StepConstants& c, const float* u,
+                                                        const uint* list_start, const short* list,
+                                                        const float4* position, const float4* factor,
+                                                        const Store& store) {
     for (uint first = begin; first < end; first += k_list_group) {
         const Members members(first, end, position);
         Real3 sum[k_list_group];
@@ -211,10 +201,23 @@ void pressure_gradient(uint begin, uint end, const StepConstants& c, const float
                 sum[s] = add_gradient(sum[s], c, weight, quick_pair_of(members.x[s], x_j));
         });
         for (uint s = 0; s < members.count; ++s) {
+            const uint i = first + s;
             const float4 g = sums_of(sum[s].x, sum[s].y, sum[s].z, Vec{});
-            gradient[first + s] = gradient_of(c, u[first + s], factor[first + s], {g.x, g.y, g.z});
+            store(i, gradient_of(c, u[i], factor[i], {g.x, g.y, g.z}));
         }
     }
+}
+
+void pressure_gradient(uint begin, uint end, const StepConstants& c, const float* u, const uint* list_start,
+                       const short* list, const float4* position, const float4* factor, float4* gradient) {
+    for_gradient(begin, end, c, u, list_start, list, position, factor, [&](uint i, float4 g) { gradient[i] = g; });
+}
+
+void pressed_velocity(uint begin, uint end, const StepConstants& c, const float* u, const uint* list_start,
+                      const short* list, const float4* position, const float4* factor, const float4* velocity,
+                      float4* out) {
+    for_gradient(begin, end, c, u, list_start, list, position, factor,
+                 [&](uint i, float4 g) { out[i] = pressed(c, velocity[i], g); });
 }
 
 void crowding_gradient(uint begin, uint end, const StepConstants& c, const uint* moved, const float* lambda,
@@ -380,7 +383,7 @@ KernelLoop FONTANA_WIDE_LOOP(const char* kernel) {
     } table[] = {
 #define WIDE(function) \
     {#function, &Loop<decltype(&::function), decltype(&FONTANA_WIDE::function)>::run<&FONTANA_WIDE::function>},
-        WIDE(density) WIDE(fluid_force) WIDE(build_neighbor_list) WIDE(sum_neighborhood) WIDE(density_rate)
+        WIDE(density) WIDE(fluid_force) WIDE(build_neighbor_list) WIDE(sum_neighborhood) WIDE(pressed_velocity)
             WIDE(pressure_residual) WIDE(pressure_gradient) WIDE(mark_crowded) WIDE(crowding_gradient) WIDE(move_apart)
                 WIDE(sum_changed) WIDE(correct_pressure) WIDE(relax) WIDE(reduce_step) WIDE(anderson_sums)
                     WIDE(coarse_products)
