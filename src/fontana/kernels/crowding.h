@@ -1,7 +1,7 @@
 // Crowding: where water strikes something a step leaves a few particles denser than its solve, linear in the step, has
 // seen. These are moved apart, as position based fluids move all (Macklin and Mueller 2013, section 3): by -G lambda,
 // lambda = (error - what may stay) / D, down the gradient of the density of each. Velocities stay as they are, and so
-// does the centre of mass where no wall has a share.
+// does the centre of mass, nearly, where no wall has a share.
 //
 // Only they, their neighbours, and for new sums the neighbours of those are visited. `moved` and `changed` say who: 1,
 // else 0. Moves are by hundredths of a spacing, and lists stay as they are: who comes within the support radius so late
@@ -54,7 +54,13 @@ KERNEL void crowding_gradient(THREAD_ARG const StepConstants c, GLOBAL const uin
         gradient[i] = gradient_at(c, i, lambda, list_start, list, position, factor);
 }
 
-FN float4 moved_down(float4 x, float4 g) { return MAKE_FLOAT4(x.x - g.x, x.y - g.y, x.z - g.z, x.w); }
+// x - g, but never out of the cell that x was sorted into: along an axis that leads out of it a particle stays.
+FN float4 moved_down(const StepConstants c, float4 x, float4 g) {
+    const float4 to = MAKE_FLOAT4(x.x - g.x, x.y - g.y, x.z - g.z, x.w);
+    const CellCoordinates home = cell_of(c, x), cell = cell_of(c, to);
+    return MAKE_FLOAT4(cell.x == home.x ? to.x : x.x, cell.y == home.y ? to.y : x.y, cell.z == home.z ? to.z : x.z,
+                       x.w);
+}
 
 // x -= G lambda, with G lambda in `gradient`; marks whose sums that changes.
 KERNEL void move_apart(THREAD_ARG const StepConstants c, GLOBAL const uint* RESTRICT moved,
@@ -62,7 +68,7 @@ KERNEL void move_apart(THREAD_ARG const StepConstants c, GLOBAL const uint* REST
                        GLOBAL const short* RESTRICT list, GLOBAL float4* RESTRICT position, GLOBAL uint* changed) {
     const uint i = THREAD_INDEX;
     if (i >= c.particle_count || moved[i] == 0u) return;
-    position[i] = moved_down(position[i], gradient[i]);
+    position[i] = moved_down(c, position[i], gradient[i]);
     mark_with_neighbors(c, i, list_start, list, changed);
 }
 

@@ -238,10 +238,9 @@ void mark_crowded(uint begin, uint end, const StepConstants& c, const float* lam
 
 void move_apart(uint begin, uint end, const StepConstants& c, const uint* moved, const float4* gradient,
                 const uint* list_start, const short* list, float4* position, uint* changed) {
-    (void)c;
     for (uint i = begin; i < end; ++i) {
         if (moved[i] == 0u) continue;
-        position[i] = moved_down(position[i], gradient[i]);
+        position[i] = moved_down(c, position[i], gradient[i]);
         for_indices(i, list_start, list, [&](uint j) { STORE_SAME(changed + j, 1u); });
     }
 }
