@@ -64,7 +64,7 @@ class Method {
     // The particles are sorted and the grid is in the constants; afterwards they are where they are after dt.
     virtual void advance(Substep& substep) = 0;
     // Whether the last substep may have crowded particles. Then they are sorted again before their frame is done, and
-    // moved apart; and all that hosts read is computed anew.
+    // moved apart; and all that hosts read is computed anew. Once: a frame that then lacks memory is tried again.
     virtual bool may_be_crowded() const { return false; }
     virtual void end_frame(Substep&) {}
 };

@@ -51,6 +51,7 @@ class Dfsph : public Method {
     void end_frame(Substep& s) override {
         begin(s);
         operators_.refresh(s, u(1));
+        may_be_crowded_ = false;
     }
 
  private:

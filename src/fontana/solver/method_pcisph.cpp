@@ -27,13 +27,15 @@ class Pcisph : public Method {
         operators_.compute_gradient(s, *u_);
         operators_.push(s);
         operators_.finish(s, *u_);
+        may_be_crowded_ = true;
     }
 
-    bool may_be_crowded() const override { return true; }
+    bool may_be_crowded() const override { return may_be_crowded_; }
 
     void end_frame(Substep& s) override {
         begin(s);
         operators_.refresh(s, *u_);
+        may_be_crowded_ = false;
     }
 
  private:
@@ -76,6 +78,7 @@ class Pcisph : public Method {
 
     Backend& backend_;
     Operators operators_;
+    bool may_be_crowded_ = true;
     std::unique_ptr<Buffer> sums_, u_, predicted_;
 };
 
