@@ -38,7 +38,10 @@ class Fluid {
     void spoil_acceleration(std::size_t k) { write(particles_.acceleration(), k, float4{0.0f, 0.0f, k_nan, 0.0f}); }
     void spoil_density(std::size_t k) { write(particles_.density(), k, k_nan); }
 
-    fontana::StepExtremes step() { return measure_step(*backend_, particles_, make_constants()); }
+    fontana::StepExtremes step() {
+        const auto extremes = backend_->allocate("extremes", fontana::k_most_lanes * 16);
+        return measure_step(*backend_, particles_, make_constants(), *extremes);
+    }
     fontana::Diagnostics all() { return measure(*backend_, particles_, make_constants()); }
 
  private:

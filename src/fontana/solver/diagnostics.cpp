@@ -42,15 +42,14 @@ Bounds measure_bounds(Backend& backend, Particles& particles, StepConstants cons
     return bounds;
 }
 
-StepExtremes measure_step(Backend& backend, Particles& particles, StepConstants constants) {
+StepExtremes measure_step(Backend& backend, Particles& particles, StepConstants constants, Buffer& extremes) {
     constants.particle_count = static_cast<std::uint32_t>(particles.count());
     const std::uint32_t lane_count = lanes_for(particles.count());
-    const auto extremes = backend.allocate("extremes", lane_count * 16);
     backend.launch(Kernel::reduce_step, lane_count,
                    {constants, lane_count, particles.position(), particles.velocity(), particles.acceleration(),
-                    particles.density(), *extremes});
+                    particles.density(), extremes});
     StepExtremes step{};
-    for (const float4& lane : lanes<float4>(backend, *extremes, lane_count)) {
+    for (const float4& lane : lanes<float4>(backend, extremes, lane_count)) {
         step.speed = max_or_nan(step.speed, static_cast<double>(lane.x));
         step.acceleration = max_or_nan(step.acceleration, static_cast<double>(lane.y));
         step.density_error_mean += static_cast<double>(lane.z);

@@ -18,10 +18,11 @@ struct StepExtremes {
     double speed, acceleration;
     double density_error_mean, density_error_max;
 };
-StepExtremes measure_step(Backend& backend, Particles& particles, StepConstants constants);
+constexpr std::size_t k_most_lanes = 4096;
+// `extremes` has room for k_most_lanes vectors and is written to.
+StepExtremes measure_step(Backend& backend, Particles& particles, StepConstants constants, Buffer& extremes);
 
 // Of `count` values on the device. `sums` has room for k_most_lanes floats and is written to.
-constexpr std::size_t k_most_lanes = 4096;
 double mean_of(Backend& backend, const Buffer& values, std::size_t count, Buffer& sums);
 
 struct Diagnostics {

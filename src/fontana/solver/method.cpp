@@ -44,7 +44,7 @@ void Substep::place_colliders() {
 }
 
 void Substep::choose_time_step() {
-    const StepExtremes now = measure_step(backend, particles, constants);
+    const StepExtremes now = measure_step(backend, particles, constants, extremes);
     report.density_error_mean = now.density_error_mean;
     report.density_error_max = now.density_error_max;
     if (!(now.speed < 1e12) || !(now.acceleration < 1e18))

@@ -45,6 +45,7 @@ struct Substep {
     Particles& particles;
     Neighborhood& neighborhood;
     ColliderBuffer& colliders;
+    Buffer& extremes;  // what choose_time_step works in
     StepConstants constants;
     SubstepReport report;
 

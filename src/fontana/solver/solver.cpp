@@ -1,6 +1,7 @@
 #include "solver/solver.h"
 
 #include "solver/constants.h"
+#include "solver/diagnostics.h"
 
 namespace fontana {
 
@@ -14,7 +15,9 @@ Substep Solver::begin_substep(const Parameters& parameters, const std::vector<Co
     StepConstants constants = make_constants(parameters);
     constants.has_force = particles_.has_force() ? 1u : 0u;
     neighborhood_.update(particles_, constants);  // III.4, III.6
-    return {parameters, colliders, time, remaining, *backend_, particles_, neighborhood_, colliders_, constants, {}};
+    if (!extremes_) extremes_ = backend_->allocate("extremes", k_most_lanes * 16);
+    return {parameters,    colliders,  time,       remaining, *backend_, particles_,
+            neighborhood_, colliders_, *extremes_, constants, {}};
 }
 
 SubstepReport Solver::substep(const Parameters& parameters, const std::vector<Collider>& colliders, double time,

@@ -43,6 +43,7 @@ class Solver {
     Particles particles_;
     Neighborhood neighborhood_;
     ColliderBuffer colliders_;
+    std::unique_ptr<Buffer> extremes_;
     std::unique_ptr<Method> method_;
     std::string method_name_;
 };
