@@ -8,11 +8,9 @@ foremost particle and half a spacing before it, after every step.
 """
 
 import json
-import os
 import sys
-import tempfile
 
-from splishsplash_run import RADIUS, SECONDS, WALL_GAP, np, sph, write_cube
+from splishsplash_run import RADIUS, WALL_GAP, np, prepare, sph
 from splishsplash_run import scene as cube_of_water
 
 METHODS = {"dfsph": 4, "iisph": 3}
@@ -33,15 +31,7 @@ def scene(cube):
 
 
 def main():
-    folder = tempfile.mkdtemp()
-    path = os.path.join(folder, "scene.json")
-    with open(path, "w") as file:
-        json.dump(scene(write_cube(folder)), file)
-    base = sph.Exec.SimulatorBase()
-    base.init(sceneFile=path, useCache=False, outputDir=folder, initialPause=False, useGui=False, stopAt=SECONDS - 1e-6)
-    base.initSimulation()
-    fluid = sph.Simulation.getCurrent().getFluidModel(0)
-    count = fluid.numActiveParticles()
+    base, fluid, count = prepare(scene)
     times, fronts = [], []
 
     def note():

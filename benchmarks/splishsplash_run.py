@@ -56,16 +56,22 @@ def scene(cube):
     }  # fmt: skip
 
 
-def main():
+def prepare(scene_of):
+    """The simulator, its fluid and how many particles that has; `scene_of` makes a scene from the walls' file."""
     folder = tempfile.mkdtemp()
     path = os.path.join(folder, "scene.json")
     with open(path, "w") as file:
-        json.dump(scene(write_cube(folder)), file)
+        json.dump(scene_of(write_cube(folder)), file)
     base = sph.Exec.SimulatorBase()
     base.init(sceneFile=path, useCache=False, outputDir=folder, initialPause=False, useGui=False, stopAt=SECONDS - 1e-6)
     base.initSimulation()
     fluid = sph.Simulation.getCurrent().getFluidModel(0)
     count = fluid.numActiveParticles()
+    return base, fluid, count
+
+
+def main():
+    base, fluid, count = prepare(scene)
     clock = {"steps": 0, "largest": [], "times": [], "mean": 0.0, "seconds": 0.0, "last": None}
 
     def after_step():

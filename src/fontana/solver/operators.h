@@ -28,8 +28,8 @@ class Operators {
     // The acceleration by viscosity, surface tension and external forces; after choose_time_step, which looks at the
     // last one, and before gradient() is used, where viscosity waits.
     void add_forces(Substep& substep);
-    // At the end of a frame, after these two alone, what hosts read: acceleration, and pressure from the u that
-    // finish() left. `u` is written to.
+    // What hosts read at the end of a frame, after begin() and move_apart(): acceleration, and pressure from the u
+    // that finish() left. `u` is written to.
     void refresh(Substep& substep, Buffer& u);
     // G u into gradient(); m/s^2.
     void compute_gradient(Substep& substep, Buffer& u);

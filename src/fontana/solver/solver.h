@@ -35,7 +35,7 @@ class Solver {
 
  private:
     Method& method(const std::string& name);
-    // Sorts.
+    // What a method works with, the particles sorted.
     Substep begin_substep(const Parameters& parameters, const std::vector<Collider>& colliders, double time,
                           double remaining);
 
